@@ -38,6 +38,7 @@ class SharedOptions(TypedDict, total=False):
     min_step: float
     first_step: float | None
     max_steps: int
+    looks: int
 
 
 class FileOptions(TypedDict, total=False):
@@ -192,6 +193,13 @@ def positive(name: str, value: float, *, zero: bool = False) -> float:
     if not (number > 0 or (zero and number == 0)):
         raise InputError(f"{name} is {displayed(value)}, expected a positive number")
     return number
+
+
+def number_of_looks(looks: int) -> int:
+    """The option `looks`, checked."""
+    if isinstance(looks, bool) or not isinstance(looks, int | np.integer) or looks < 0:
+        raise InputError(f"looks is {displayed(looks)}, expected an integer: how often psi is looked at, 0 for never")
+    return int(looks)
 
 
 def times_of(t_eval: npt.ArrayLike, span: Span) -> Array:

@@ -13,10 +13,10 @@ from liehom.base.typing import Array, BooleanArray, IntegerArray
 from liehom.flow.action.field import GeneratorField
 from liehom.flow.engines.lanes import LaneSteps, times_until
 from liehom.flow.engines.traced_step import args_of_lanes
-from liehom.flow.run.control import length
+
 from liehom.flow.run.events import Events, Look
 from liehom.flow.run.run import Run, StepProposal
-from liehom.flow.steps.step import Generator
+from liehom.flow.steps.step import Generator, length
 
 # Event functions on any number of points of a run, also those that take only what an eager run gives them. An event
 # function is called with all points at once if that gives, at some points, what it gives for them in the form of the

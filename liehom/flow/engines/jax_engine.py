@@ -33,8 +33,9 @@ from liehom.flow.engines.jax_loops import (
     with_adaptive_sizes,
     with_given_sizes,
 )
-from liehom.flow.engines.traced_step import SizeLimits, args_form, traced_step
-from liehom.flow.run.control import ERROR_TERMS, SLACK
+from liehom.flow.engines.traced_step import args_form, traced_step
+from liehom.flow.run.check import gap_of
+from liehom.flow.run.control import ERROR_TERMS, SLACK, SizeLimits
 from liehom.flow.run.options import END, ORDER_NOT_KEPT, outcome
 from liehom.flow.run.records import Report, loss_of_order
 from liehom.flow.run.solution import Solution
@@ -293,7 +294,7 @@ class _Call:
         if not self.adaptive:
             return self._given(None)
         recorded = int(min(self.problem.options.max_steps, MAX_RECORDED)) if traced else recorded
-        key = "adaptive", traced, recorded, self.problem.options.least_step
+        key = "adaptive", traced, recorded, self.problem.options.least_step, self.problem.options.looks
 
         def function(*leaves: JaxArray) -> Sequence[JaxArray]:
             results, sizes = self._adapted(leaves, recorded)
@@ -386,8 +387,9 @@ class _Call:
         direction: Any = jnp.where(t1 >= t0, 1.0, -1.0).astype(start.dtype)
         tiny: Any = 8 * float(np.finfo(start.dtype).eps) * jnp.maximum(jnp.abs(t0), jnp.abs(t1))
         tiny = jnp.maximum(tiny, self.problem.options.least_step)
-        limits = SizeLimits(rtol, atol, max_step, t1, direction, tiny)
         field, at = self._bound(start, args)
+        gap = gap_of(self.problem.options.looks, t1 - t0, field)
+        limits = SizeLimits(rtol, atol, max_step, t1, direction, tiny, gap)
         step: Any = self.step
         points, state, sizes = with_adaptive_sizes(step, field, at, start, t0, times, limits, first, most, recorded)
         return [points, state.code, state.count, state.t, state.failed, state.near, state.lost], sizes

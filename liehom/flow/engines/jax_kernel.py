@@ -12,7 +12,7 @@ import numpy as np
 from liehom.base.errors import InputError, TraceError
 from liehom.base.typing import Array, IntegerArray
 from liehom.flow.engines.lanes import HandBack, LaneSteps, operations, steps_per_call
-from liehom.flow.engines.traced_step import args_of_lanes, limits_of, totals_of, traced_step
+from liehom.flow.engines.traced_step import args_of_lanes, totals_of, traced_step
 from liehom.flow.run.control import SLACK
 from liehom.flow.run.run import Run
 from liehom.flow.tracing.graph import needed
@@ -176,7 +176,7 @@ class FastPath:
             lanes = np.flatnonzero(dimensions == d)
             graph = traced_step(
                 run.action, run.field, run.step, points[lanes], int(d), ends=(float(run.span[0]), float(run.span[1])),
-                nominal=o.nominal, limits=limits_of(run) if o.dt is None else None,
+                nominal=o.nominal, limits=run.limits if o.dt is None else None,
                 args=args_of_lanes(run.field.args, run.shape, lanes),
             )  # fmt: skip
             rows = graph.constants(points[lanes])

@@ -14,8 +14,19 @@ from liehom.base.errors import LiehomError, TraceError
 from liehom.flow.action.field import GeneratorField
 from liehom.flow.action.space import Action
 from liehom.flow.engines.jax_kernel import options_of
-from liehom.flow.engines.traced_step import SizeLimits, arg_values, first_size, judgement, tried_size
-from liehom.flow.run.control import MAX_RATE, MAX_SHRINK, MIN_RATE, RATE_SAMPLES, SLACK, whole_lattice
+from liehom.flow.engines.traced_step import arg_values
+from liehom.flow.run.control import (
+    MAX_RATE,
+    MAX_SHRINK,
+    MIN_RATE,
+    RATE_SAMPLES,
+    SLACK,
+    SizeLimits,
+    first_size,
+    judgement,
+    tried_size,
+    whole_lattice,
+)
 from liehom.flow.run.options import CLOCK, END, IMPLICIT, NOT_FINITE, TOO_MANY, TOO_SMALL
 from liehom.flow.steps.step import Generator, LocalStep, Step
 from liehom.flow.tracing.loop import StepGraph
@@ -446,9 +457,9 @@ def with_adaptive_sizes(
         guess: Any = first_size(limits, inner, psi, state.m, state.t)
         if guess is not None:
             proposal = jnp.where(jnp.isinf(proposal), guess, proposal)
-        h: Any
-        certain: Any
-        h, certain = tried_size(limits, step.action, psi, inner, step.step, state.m, state.t, proposal)
+        tried = tried_size(limits, step.action, psi, inner, step.step.order, state.m, state.t, proposal, field)
+        certain: Any = tried.good
+        h: Any = direction * tried.size
         to_end, solved = local.size_for(stop - state.t)
         runs = local.runs(h)
         last = jnp.where(runs, direction * (stop - state.t - local.time(h)) <= SLACK * jnp.abs(h), False)

@@ -69,6 +69,7 @@ class LatticeStep(Step):
         )
         self.calls: int = recorded.calls
         self.estimate_order: int | None = recorded.estimate_order
+        self.widest_gap: float = recorded.widest_gap
 
     @property
     def order(self) -> int:
@@ -132,7 +133,7 @@ class _LatticeLocal(LocalStep):
 
     def __init__(self, step: LatticeStep, action: Action, m: Array, t: Values) -> None:
         super().__init__(action, m, point=self._moved)
-        self.estimate_order = step.estimate_order
+        self.estimate_order, self.widest_gap = step.estimate_order, step.widest_gap
         self.step, self.t = step, np.broadcast_to(np.asarray(t)[..., 0], m.shape[:-1])
         self._last: tuple[Array, tuple[Array, Array | None]] | None = None
 
@@ -169,6 +170,7 @@ class _Recorded:
         local = step.at(action, psi, Traced(tape, self.start), Traced(tape, self.time)[..., None])
         results: list[tuple[str, Any]] = [("m", local.point(h))]
         self.estimate_order: int | None = local.estimate_order
+        self.widest_gap: float = local.widest_gap
         if local.estimate_order is not None:
             results.append(("e", local.estimate(h)))
         if tape.required:

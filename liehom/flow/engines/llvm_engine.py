@@ -35,10 +35,10 @@ from liehom.flow.engines.lanes import (
 )
 from liehom.flow.engines.lattice import LatticeStep, lattice_step, solved_on_lattice
 from liehom.flow.engines.plan import Plan, RunSchedule, Schedule, plan_key, plan_names
-from liehom.flow.engines.traced_step import arg_values, args_form, args_of_lanes, limits_of, traced_step
+from liehom.flow.engines.traced_step import arg_values, args_form, args_of_lanes, traced_step
 from liehom.flow.run.options import END
 from liehom.flow.run.records import bounds_of
-from liehom.flow.run.run import MAX_MOVE_WITH_EVENTS, Run
+from liehom.flow.run.run import Run
 from liehom.flow.run.solution import Solution
 from liehom.flow.steps.step import Generator
 from liehom.flow.tracing.graph import LaneConstant
@@ -143,10 +143,10 @@ class CodeStore:
         frame = None if tight is None else (tight.symmetric, round(float(tight.isotropy), 9))
         uniform = o.dt is not None and bool((o.dt == np.max(o.dt, initial=0.0)).all())
         args, lead = run.field.args, len(run.shape)
-        moves = np.inf if run.stops.events is None else MAX_MOVE_WITH_EVENTS
-        key = (dimension, uniform, o.dt is None and moves, o.nominal, run.step.trace_key, frame, args_form(args, lead))
+        bounds = o.dt is None and (run.limits.moves, run.limits.gap is None)
+        key = (dimension, uniform, bounds, o.nominal, run.step.trace_key, frame, args_form(args, lead))
         if key not in self.graphs:
-            limits = limits_of(run)._replace(moves=moves) if o.dt is None else None
+            limits = run.limits if o.dt is None else None
 
             def traced(*, stops: bool) -> StepGraph:
                 return traced_step(
@@ -199,7 +199,7 @@ class _CompiledRun:
         self.work = max((operations(graph) for _, _, graph in self.groups), default=1)
         self.schedule = store.schedule(run) if self.groups and self.groups[0][2].reached is None else None
         latest = bounds_of((float(run.span[0]), float(run.span[1])))[1]
-        self.values: dict[str, Any] = {**arg_values(run.field.args, len(run.shape)), **limits_of(run)._asdict()}
+        self.values: dict[str, Any] = {**arg_values(run.field.args, len(run.shape)), **run.limits._asdict()}
         self.values |= {"latest": latest, "rest": float(run.rest)}
 
         if len(self.start) and not run.state.taken.any() and run.step.uses_isotropy:

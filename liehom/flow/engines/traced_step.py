@@ -16,22 +16,17 @@ from liehom.flow.action.frames import tight_frame
 from liehom.flow.action.space import Action
 from liehom.flow.run.control import (
     ERROR_TERMS,
-    MAX_GROWTH,
     MAX_RATE,
     MIN_RATE,
     NEWTON_ITERATIONS,
     SLACK,
-    Tolerance,
+    SizeLimits,
     clock_at,
-    is_large_enough,
-    judged,
-    known_size,
-    largest_size,
-    length,
-    time_scale,
+    first_size,
+    judgement,
+    tried_size,
 )
 from liehom.flow.run.records import LOST, bounds_of, earliness
-from liehom.flow.run.run import FIRST_STEP_FRACTION, Run
 from liehom.flow.series.arrays import namespace
 from liehom.flow.steps.step import Generator, LocalStep, Step, StepLimits, over_sites
 from liehom.flow.tracing.array import Traced
@@ -108,66 +103,7 @@ def _name(path: str, entry: tuple[int, ...]) -> str:
     return path + "".join(f"[{i}]" for i in entry)
 
 
-# Adaptive step sizes of a traced step: the rules of `liehom.flow.run.control` on tracers and JAX arrays.
-
 EPS = float(np.finfo(np.float64).eps)
-
-
-class SizeLimits(NamedTuple):
-    """Tolerances and bounds of adaptive step sizes: numbers of a run, or tracers for them."""
-
-    rtol: Real
-    atol: Real
-    max_step: Real
-    end: Real  # the time at the end
-    direction: Real  # 1, or -1 if time decreases
-    tiny: Real  # below this size time does not advance
-    moves: float = float("inf")  # bound for the way of a point in a step, in units of |m|
-
-
-def limits_of(run: Run) -> SizeLimits:
-    """The limits of a run."""
-    o = run.options
-    return SizeLimits(o.rtol, o.atol, o.max_step, float(run.stops.end), float(run.direction), float(run.tiny))
-
-
-def tried_size(
-    limits: SizeLimits, action: Action, psi: Generator, local: LocalStep, step: Step, m: Values, t: Values,
-    proposal: Values,
-) -> tuple[Values, Values]:  # fmt: skip
-    """The signed size of the next step, and whether time advances by it; if not, the run ends the trajectory."""
-    xp = namespace(m, t)
-    left = xp.abs(limits.end - t)
-    bound: Any = largest_size(limits.max_step, left)
-    if limits.moves < np.inf:
-        bound = xp.minimum(bound, limits.moves * time_scale(psi.field, m, t))
-    h: Any = xp.minimum(proposal, bound)
-    if local.estimate_order is None:
-        axes = len(psi.field.sites)
-        speed = over_sites(length(m), axes) / time_scale(psi.field, m, t)
-        own = StepLimits(Tolerance(limits.rtol, limits.atol, axes).norm(m), speed, h, axes)
-        h = known_size(action, psi, local, m, t, step.order, own)
-    return limits.direction * h, is_large_enough(h, limits.tiny, left)
-
-
-def judgement(
-    limits: SizeLimits, local: LocalStep, m: Values, size: Values, axes: int = 0
-) -> tuple[Values | bool, Values]:
-    """Whether a step of signed size (..., 1) is accepted, and the next size; one for all of the last `axes` axes."""
-    h: Values = size[..., 0]
-    if local.estimate_order is None:
-        return True, MAX_GROWTH * abs(h)
-    allowed = Tolerance(limits.rtol, limits.atol, axes).norm(m)
-    return judged(local.estimate(size), allowed, h, local.estimate_order, axes)
-
-
-def first_size(limits: SizeLimits, local: LocalStep, psi: Generator, m: Values, t: Values) -> Values | None:
-    """Size of the first step of an embedded pair, without sign; None where the Taylor coefficients give it."""
-    if local.estimate_order is None:
-        return None
-    xp = namespace(m, t)
-    longest = largest_size(limits.max_step, xp.abs(limits.end - t))
-    return xp.minimum(longest, FIRST_STEP_FRACTION * time_scale(psi.field, m, t))
 
 
 def size_to_stop(
@@ -237,7 +173,8 @@ def _traced(
     certain: Any = True
     if limits is not None:
         limits = _traced_limits(tape, limits)
-        h, certain = tried_size(limits, action, psi, local, step, m, t, h)
+        size, certain, looks, cuts = tried_size(limits, action, psi, local, step.order, m, t, h, field)
+        h = limits.direction * size
     own_clock, first, reached = bool(local.clock) and not nominal, None, None
     passed = _number(tape, local.time(h) if own_clock else h) if own_clock or limits is not None else None
     if stops:
@@ -261,6 +198,8 @@ def _traced(
     if limits is not None:
         sizes = Sizes(_number(tape, h), *[_number(tape, x) for x in judgement(limits, local, m, size)])
     worst, summed = _statistics(tape, local, t, size, ends)
+    if limits is not None and limits.gap is not None and sizes is not None and local.estimate_order is None:
+        summed |= {"looks": _number(tape, looks), "cuts": _number(tape, cuts)}
     tape.required.append(_number(tape, local.valid(size)))
     solved = _all_of(tape, tape.required)
     runs = _all_of(tape, [x for x in (runs, solved, _number(tape, certain)) if x is not None])
@@ -283,9 +222,11 @@ def _all_of(tape: Tape, conditions: Sequence[Expr]) -> Expr | None:
 
 
 def _traced_limits(tape: Tape, limits: SizeLimits) -> SizeLimits:
-    """The numbers of the limits by name, as constants of the run; `moves` as it is."""
-    numbers = (Traced(tape, tape.run_constant(*x)) for x in limits._asdict().items() if x[0] != "moves")
-    return SizeLimits._make((*numbers, limits.moves))
+    """The numbers of the limits by name, as constants of the run; `moves` as it is, and a gap that is no number."""
+    fixed = {"moves"} if limits.gap is not None and limits.gap < np.inf else {"moves", "gap"}
+    return limits._replace(
+        **{k: Traced(tape, tape.run_constant(k, x)) for k, x in limits._asdict().items() if k not in fixed}
+    )
 
 
 def _counted(tape: Tape, field: GeneratorField) -> GeneratorField:

@@ -140,6 +140,7 @@ class LieTaylor(OneExponential):
             coefficients = [series.coefficient(k) for k in range(1, self.order + 1)]
         local = _Polynomial(action, m, coefficients)
         if error_terms:
+            local.trajectory = [flow.point(k) for k in range(1, self.order + error_terms + 1)]
             step = step_series(action, local, m, self.order + error_terms)
             local.defects = tuple(
                 (k, namespace(m).linalg.norm(flow.point(k) - step.coefficient(k), axis=-1))

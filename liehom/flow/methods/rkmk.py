@@ -22,6 +22,7 @@ from liehom.flow.action.space import Action
 from liehom.flow.door import QQ
 from liehom.flow.methods.runge_kutta import Tableau
 from liehom.flow.methods.tableaux import tableau as tableau_of
+from liehom.flow.run.check import widest_gap
 from liehom.flow.series.arrays import is_exact, is_jax, zeros
 from liehom.flow.steps.implicit import SparseRow, combined, reach_of, solve_implicitly
 from liehom.flow.steps.step import Factors, Generator, LocalStep, OneExponential
@@ -34,6 +35,7 @@ class Coefficients(NamedTuple):
     b: SparseRow
     c: tuple[Any, ...]
     difference: SparseRow
+    widest_gap: float  # between the nodes of the stages on which step and estimate depend, in units of the step
 
 
 @final
@@ -175,6 +177,7 @@ class EmbeddedStep(LocalStep):
         super().__init__(stages.action, stages.m)
         tableau = stages.method.tableau
         self.estimate_order: int = min(tableau.order, tableau.embedded_order or tableau.order) + 1
+        self.widest_gap = stages.numbers.widest_gap
         self._stages = stages
 
     def factors(self, h: Values) -> Factors:
@@ -275,8 +278,9 @@ def exact_like(value: Fraction, like: Values) -> Any:
 def _coefficients(rows: Sequence[Sequence[Any]]) -> Coefficients:
     """Coefficients from the rows of a, and b, c and the embedded weights as last rows."""
     *a, b, c, embedded = rows
-    difference = [x - y for x, y in zip(b, embedded, strict=True)]
-    return Coefficients(tuple(sparse_row(row) for row in a), sparse_row(b), tuple(c), sparse_row(difference))
+    weights, difference = sparse_row(b), sparse_row([x - y for x, y in zip(b, embedded, strict=True)])
+    gap = widest_gap([c[i] for i, _ in (*weights, *difference)])
+    return Coefficients(tuple(sparse_row(row) for row in a), weights, tuple(c), difference, gap)
 
 
 def sparse_row(row: Sequence[Any]) -> SparseRow:

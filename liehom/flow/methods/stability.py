@@ -15,10 +15,10 @@ from liehom.flow.action.field import GeneratorField
 from liehom.flow.action.space import Action
 from liehom.flow.door import adjoint, so
 from liehom.flow.methods.stiff import Linearization
-from liehom.flow.run.control import clock_at, length, size_for, unsolvable
+from liehom.flow.run.control import clock_at, size_for, unsolvable
 from liehom.flow.run.options import Span
 from liehom.flow.run.solution import Solution
-from liehom.flow.steps.step import Generator, LocalStep, Step
+from liehom.flow.steps.step import Generator, LocalStep, Step, length
 
 # Stability of steps: the factor by which a step multiplies a small deviation from an equilibrium, and its limits. The
 # field X = lambda y near a point e of S^2, with complex lambda = -K + i omega in the tangent plane, is given by

@@ -17,6 +17,7 @@ from liehom.flow.action.space import Action
 from liehom.flow.methods.rkmk import RKMK, Stages, sparse_row
 from liehom.flow.methods.runge_kutta import Tableau
 from liehom.flow.methods.tableaux import tableau as tableau_of
+from liehom.flow.run.check import widest_gap
 from liehom.flow.series.arrays import is_lazy, zeros
 from liehom.flow.series.jet import Jet
 from liehom.flow.steps.implicit import DIFFERENCE, NOT_ON_JETS, Equation, SparseRow, Stage, combined
@@ -152,7 +153,7 @@ class StiffStep(LocalStep):
 
     def __init__(self, stages: Stages, weights: SparseRow, gamma: float, at_start: bool, order: int) -> None:
         super().__init__(stages.action, stages.m)
-        self.estimate_order = order
+        self.estimate_order, self.widest_gap = order, stages.numbers.widest_gap
         self._stages, self._weights, self._gamma, self._at_start = stages, weights, gamma, at_start
         self._linear: Linearization | None = None
 
@@ -291,7 +292,7 @@ class RosenbrockStep(LocalStep):
 
     def __init__(self, method: RosenbrockData, linear: Linearization) -> None:
         super().__init__(linear.action, linear.m)
-        self.estimate_order = method.estimate_order
+        self.estimate_order, self.widest_gap = method.estimate_order, widest_gap(method.alpha)
         self._method, self._linear = method, linear
         self._stages = LastSize(self._computed)
 

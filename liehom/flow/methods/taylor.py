@@ -20,12 +20,20 @@ from liehom.base.typing import Array, IntegerArray, Values
 from liehom.flow.action.exponential import TrueExponential
 from liehom.flow.action.quadrics import Quadrics, TightInverse, quadric_orbits, tight_inverse
 from liehom.flow.action.space import Action
-from liehom.flow.run.control import length
 from liehom.flow.series.arrays import is_traced, namespace
 from liehom.flow.series.jet import Jet
 from liehom.flow.steps.corrected import least_generator
 from liehom.flow.steps.expansion import Flow, flow_series
-from liehom.flow.steps.step import SERIES_FRACTION, Generator, LocalStep, Step, StepLimits, over_sites, polynomial
+from liehom.flow.steps.step import (
+    SERIES_FRACTION,
+    Generator,
+    LocalStep,
+    Step,
+    StepLimits,
+    length,
+    over_sites,
+    polynomial,
+)
 from liehom.flow.tracing.array import Traced
 
 MAGNUS_ORDER = 4  # order of Exp(xi) m for xi = M_0 - [M_0, M_1] and the true exponential
@@ -139,15 +147,15 @@ class TaylorSeries(LocalStep):
 
     def __init__(self, action: Action, m: Values, flow: Flow, order: int) -> None:
         super().__init__(action, m)
-        self.coefficients: list[Values] = [flow.point(k) for k in range(1, order + 1)]
+        self.trajectory = [flow.point(k) for k in range(1, order + 1)]
 
     def size(self, limits: StepLimits) -> Array:
         """Largest size (...,) at which the last two terms, and those of the upper half of the orders as the last may
         vanish, are within the error that is allowed, and at most a tenth of the length |X| h of the step.
         """
-        n, xp = len(self.coefficients), namespace(limits.largest, limits.speed)
+        n, xp = len(self.trajectory), namespace(limits.largest, limits.speed)
         first = max(n // 2, 1)
-        terms = [over_sites(length(x), limits.axes) for x in self.coefficients[first - 1 :]]
+        terms = [over_sites(length(x), limits.axes) for x in self.trajectory[first - 1 :]]
         before, last = terms[-2] if n > 1 else terms[-1], terms[-1]
         way: Any = xp.where(limits.speed > 0, SERIES_FRACTION * limits.speed, np.inf)
         a: Any = limits.allowed / last  # h^n is at most this
@@ -169,7 +177,7 @@ class TaylorSeries(LocalStep):
         """
         if not terms:
             return h
-        n, xp = len(self.coefficients), namespace(h, limits.speed)
+        n, xp = len(self.trajectory), namespace(h, limits.speed)
         size: Any = over_sites(length(self.m), limits.axes)
         eighth, worst = xp.sqrt(xp.sqrt(xp.sqrt(size / limits.allowed))), 1.0
         unit, power = 1 / (EVEN * size), h**first
@@ -179,10 +187,6 @@ class TaylorSeries(LocalStep):
         while first > 1:  # a root of an order that is a power of 2 and at most `first`
             worst, first = xp.sqrt(worst), first // 2
         return h / worst
-
-    def series(self, h: Values) -> Values:
-        """m_0 + m_1 h + ... + m_n h^n for h of shape (..., 1), shape (..., N)."""
-        return self.m + polynomial([None, *self.coefficients], h)
 
 
 @final
@@ -205,6 +209,10 @@ class ProjectedSeries(TaylorSeries):
         """Point after the step of size h (..., 1), shape (..., N)."""
         landed = self.series(h)
         return landed if self._levels is None else self._quadrics.project(landed, self._levels)
+
+    def nearby(self, h: Values) -> Values:
+        """The point after the step."""
+        return self.point(h)
 
 
 @final

@@ -29,6 +29,7 @@ from liehom.flow.engines.arguments import (
     jax_start,
     jax_times,
     least_atol,
+    number_of_looks,
     positive,
     step_sizes,
     times_of,
@@ -43,6 +44,7 @@ from liehom.flow.engines.sensitivity import Sensitivity
 from liehom.flow.methods.low_order import LieTaylor
 from liehom.flow.methods.stability import warn_of_stiffness
 from liehom.flow.methods.taylor import Taylor
+from liehom.flow.run.check import LOOKS
 from liehom.flow.run.events import EventFunction
 from liehom.flow.run.options import Options, Span, points_of, span_of
 from liehom.flow.run.solution import Solution, checked_path, warn_of_order
@@ -379,6 +381,7 @@ class Propagator:
         min_step: float = 0.0,
         first_step: float | None = None,
         max_steps: int = 10_000_000,
+        looks: int = LOOKS,
         progress: bool | Callable[[float], object] = False,
         checkpoint: str | os.PathLike[str] | None = None,
         checkpoint_every: float = 30.0,
@@ -407,6 +410,7 @@ class Propagator:
             min_step=least,
             first_step=(least or None) if first_step is None else positive("first_step", first_step),
             max_steps=positive("max_steps", max_steps),
+            looks=number_of_looks(looks),
             checkpoint_every=positive("checkpoint_every", checkpoint_every, zero=True),
             progress=progress,
             checkpoint=None if checkpoint is None else checked_path(checkpoint),

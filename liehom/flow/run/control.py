@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, final
+from typing import Any, NamedTuple, final
 
 import numpy as np
 
@@ -11,15 +11,15 @@ from liehom.base.errors import ConvergenceError
 from liehom.base.typing import Array, BooleanArray, Real, Values
 from liehom.flow.action.field import GeneratorField
 from liehom.flow.action.space import Action
+from liehom.flow.run.check import checked
 from liehom.flow.series.arrays import namespace
 from liehom.flow.steps.expansion import flow_series, step_series
 from liehom.flow.steps.step import (
     SAFETY,
-    Defects,
     Generator,
     LocalStep,
     StepLimits,
-    floats,
+    length,
     over_sites,
     size_from_defects,
 )
@@ -100,6 +100,9 @@ def fitted(local: LocalStep, h: Array, left: Array, *, halve: bool) -> tuple[Arr
 # step is taken, judged, and repeated if it was too large; see `liehom.flow.steps.step` for the sizes that are known in
 # advance. The rules run on arrays, and on the tracers of compiled steps (`Values`); results are of the same kind.
 
+FIRST_STEP_FRACTION = 0.01  # the first step of an embedded pair, in units of |m| / |X|
+MAX_PAIR_MOVE = 1.0  # with an embedded pair, the largest way of a point in a step for psi(m), in units of |m|
+NEGLIGIBLE = 0.1  # terms below this part of the allowed error are not compared with the length of the step
 MAX_PAIR_GROWTH = 5.0  # with an embedded pair, the largest ratio of the next step size to the last one
 MAX_SHRINK = 0.2  # the smallest ratio of the next step size to the last one
 ERROR_TERMS = 2  # number of Taylor coefficients of the error that are computed
@@ -127,18 +130,80 @@ class Tolerance:
         return over_sites(self.atol * point.shape[-1] ** 0.5 + relative * length(point), self.axes)
 
 
-def length(x: Values) -> Array:
-    """2-norm over the last axis, in float64."""
-    values = floats(x)
-    return namespace(values).sqrt((values * values).sum(axis=-1))
-
-
 def whole_lattice(where: BooleanArray, axes: int) -> BooleanArray:
     """All sites of the lattices, on the last axes, that have one of these sites; the same sites without a lattice."""
     if not axes:
         return where
     xp = namespace(where)
     return xp.broadcast_to(xp.any(where, axis=tuple(range(-axes, 0)), keepdims=True), where.shape)
+
+
+class SizeLimits(NamedTuple):
+    """Tolerances and bounds of adaptive step sizes: numbers of a run, or tracers for them."""
+
+    rtol: Real
+    atol: Real
+    max_step: Real
+    end: Real  # the time at the end
+    direction: Real  # 1, or -1 if time decreases
+    tiny: Real  # below this size time does not advance
+    gap: Real | None  # the longest time between two looks at psi (`liehom.flow.run.check`); None for no looks
+    moves: float = float("inf")  # bound for the way of a point in a step, in units of |m|
+
+    def norm(self, m: Values, axes: int) -> Array:
+        """2-norm of the error that is allowed at the points m (..., N), shape (...,)."""
+        return Tolerance(self.rtol, self.atol, axes).norm(m)
+
+
+class Tried(NamedTuple):
+    """Sizes (...,) of the next steps, without sign."""
+
+    size: Array
+    good: BooleanArray  # whether time advances by the size; if not, the run ends the trajectory
+    looks: Values  # looks at psi within the step, and how often they have cut its size
+    cuts: Values
+
+
+def tried_size(
+    limits: SizeLimits, action: Action, psi: Generator, local: LocalStep, order: int, m: Values, t: Values,
+    proposal: Values, looked_at: GeneratorField,
+) -> Tried:  # fmt: skip
+    """The sizes of the next steps, at most the proposal; what psi does within the step is seen in `looked_at`."""
+    xp, axes = namespace(m, t), len(psi.field.sites)
+    left: Any = xp.abs(limits.end - t)
+    bound: Any = xp.minimum(proposal, largest_size(limits.max_step, left))
+    looks, cuts, moves = 0.0, 0.0, limits.moves
+    embedded = local.estimate_order is not None
+    if embedded and limits.gap is not None:
+        if psi.field.time_dependent:
+            bound = xp.minimum(bound, limits.gap / local.widest_gap)
+        else:
+            moves = min(moves, MAX_PAIR_MOVE)
+    if moves < np.inf:
+        bound = xp.minimum(bound, moves * time_scale(psi.field, m, t))
+    h: Any = bound
+    if not embedded:
+        known_trajectory(psi, local, m, t, order)
+        allowed, speed = limits.norm(m, axes), over_sites(length(local.trajectory[0]), axes)
+        h = known_size(action, local, m, order, StepLimits(allowed, speed, bound, axes))
+        if limits.gap is not None:
+            # where X goes to 0, so do steps that are bounded by a part of |X| h
+            free = StepLimits(NEGLIGIBLE * allowed, 0 * speed, bound, axes)
+            h = xp.maximum(h, known_size(action, local, m, order, free))
+            h, looks, cuts = checked(
+                looked_at, local, m, t, h, allowed, left,
+                direction=limits.direction, gap=limits.gap, tiny=limits.tiny, axes=axes,
+            )  # fmt: skip
+    return Tried(h, is_large_enough(h, limits.tiny, left), looks, cuts)
+
+
+def first_size(limits: SizeLimits, local: LocalStep, psi: Generator, m: Values, t: Values) -> Values | None:
+    """Size of the first step of an embedded pair, without sign; None where the Taylor coefficients give it."""
+    if local.estimate_order is None:
+        return None
+    xp = namespace(m, t)
+    longest = largest_size(limits.max_step, xp.abs(limits.end - t))
+    return xp.minimum(longest, FIRST_STEP_FRACTION * time_scale(psi.field, m, t))
 
 
 def largest_size(max_step: Real, left: Values) -> Array:
@@ -161,21 +226,32 @@ def time_scale(field: GeneratorField, m: Values, t: Values) -> Array:
     return size / speed
 
 
-def known_size(
-    action: Action, psi: Generator, local: LocalStep, m: Values, t: Values, order: int, limits: StepLimits
-) -> Values:
+def known_trajectory(psi: Generator, local: LocalStep, m: Values, t: Values, order: int) -> None:
+    """Expand the trajectory to `ERROR_TERMS` orders above the order of a step that has not done so."""
+    if not local.trajectory:
+        flow = flow_series(psi.field, m, order + ERROR_TERMS, t)
+        local.trajectory = [flow.point(k) for k in range(1, order + ERROR_TERMS + 1)]
+
+
+def known_size(action: Action, local: LocalStep, m: Values, order: int, limits: StepLimits) -> Values:
     """The size that the step knows in advance (`LocalStep.size`), else from the Taylor coefficients of its error."""
     size = local.size(limits)
-    return size_from_defects(defects_of(action, psi, local, m, t, order), *limits) if size is None else size
+    if size is not None:
+        return size
+    step = step_series(action, local, m, order + ERROR_TERMS)
+    terms = range(order + 1, order + ERROR_TERMS + 1)
+    local.defects = tuple((k, length(local.trajectory[k - 1] - step.coefficient(k))) for k in terms)
+    return size_from_defects(local.defects, *limits)
 
 
-def defects_of(action: Action, psi: Generator, local: LocalStep, m: Values, t: Values, order: int) -> Defects:
-    """(k, |[t^k] (F - step)|) for `ERROR_TERMS` orders k above the order of a step, F the flow."""
-    if local.defects is not None:
-        return local.defects
-    total = order + ERROR_TERMS
-    flow, step = flow_series(psi.field, m, total, t), step_series(action, local, m, total)
-    return tuple((k, length(flow.point(k) - step.coefficient(k))) for k in range(order + 1, total + 1))
+def judgement(
+    limits: SizeLimits, local: LocalStep, m: Values, size: Values, axes: int = 0
+) -> tuple[Values | bool, Values]:
+    """Whether a step of signed size (..., 1) is accepted, and the next size; one for all of the last `axes` axes."""
+    h: Values = size[..., 0]
+    if local.estimate_order is None:
+        return True, MAX_GROWTH * abs(h)
+    return judged(local.estimate(size), limits.norm(m, axes), h, local.estimate_order, axes)
 
 
 def judged(error: Values, allowed: Values, h: Values, order: int, axes: int = 0) -> tuple[BooleanArray, Array]:

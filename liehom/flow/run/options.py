@@ -14,6 +14,7 @@ import numpy.typing as npt
 from liehom.base.budget import in_time
 from liehom.base.errors import InputError, displayed
 from liehom.base.typing import Array, BooleanArray, IntegerArray
+from liehom.flow.run.check import LOOKS
 from liehom.flow.run.events import EventFunction
 
 # Options of a run, and the codes and messages of the ways in which a trajectory can end.
@@ -60,6 +61,7 @@ class Options:
     progress: bool | Callable[[float], object] = False
     checkpoint: Path | None = None  # a file that can be written
     min_step: float = 0.0
+    looks: int = LOOKS
 
     @property
     def least_step(self) -> float:
@@ -77,6 +79,7 @@ class Options:
             f"{'adaptive' if self.dt is None else 'fixed'} {self.rtol} {self.atol} "
             f"{'steps' if self.t_eval is None else 't_eval'} {self.dense_output} "
             f"{self.clock} {self.max_step} {self.first_step}" + (f" {self.min_step}" if self.min_step else "")
+            + (f" looks {self.looks}" if self.dt is None else "")
         )
 
 

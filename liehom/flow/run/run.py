@@ -20,20 +20,17 @@ from liehom.base.typing import Array, BooleanArray, IntegerArray, Real, Values, 
 from liehom.flow.action.field import GeneratorField
 from liehom.flow.action.space import Action
 from liehom.flow.run import solution as files
+from liehom.flow.run.check import gap_of
 from liehom.flow.run.control import (
     ERROR_TERMS,
-    MAX_GROWTH,
     MAX_SHRINK,
     SLACK,
-    Tolerance,
+    SizeLimits,
+    first_size,
     fitted,
-    is_large_enough,
-    judged,
-    known_size,
-    largest_size,
-    length,
+    judgement,
     size_for,
-    time_scale,
+    tried_size,
     unsolvable,
     whole_lattice,
 )
@@ -59,7 +56,7 @@ from liehom.flow.run.solution import DenseSolution, Solution, with_steps
 from liehom.flow.series.arrays import in_lanes
 from liehom.flow.series.jet import Jet
 from liehom.flow.steps.expansion import flow_series
-from liehom.flow.steps.step import Diagnostics, Generator, LocalStep, Step, StepLimits, over_sites
+from liehom.flow.steps.step import Diagnostics, Generator, LocalStep, Step, length
 
 # RunState, the part of a run that changes from step to step. Checkpoints save it, and after an interruption it is
 # rolled back to the last whole step. Steps replace the arrays of the state and never write into them, so a snapshot
@@ -156,7 +153,6 @@ class RunState:
 # be finite. A step is asked for nothing but the methods of `LocalStep`.
 
 LOGGER = logging.getLogger("liehom.flow.propagation")  # one line at level DEBUG for each step and each failure of a run
-FIRST_STEP_FRACTION = 0.01  # the first step of an embedded pair, in units of |m| / |X|
 MAX_MOVE_WITH_EVENTS = 0.5
 """With events, an adaptive step moves a point by at most |m| times this, so that g has few extrema in it."""
 
@@ -243,10 +239,14 @@ class Automaton:
         self.psi: Generator = Generator(field, psi.orbit_dimension, start)
         self.direction = self.dtype.type(1 if span[1] >= span[0] else -1)
         self.tried: tuple[LocalStep, Array] | None = None  # the last step that was proposed, and its sizes
-        self.tolerance: Tolerance = Tolerance(options.rtol, options.atol, self.axes)
         # below this time nothing is left
         self.rest = self.dtype.type(8 * np.finfo(self.dtype).eps * max(abs(span[0]), abs(span[1])))
         self.tiny = max(float(self.rest), options.least_step)  # the smallest step size
+        gap = gap_of(options.looks, span[1] - span[0], psi.field)
+        moves = np.inf if options.events is None else MAX_MOVE_WITH_EVENTS
+        self.limits: SizeLimits = SizeLimits(
+            options.rtol, options.atol, options.max_step, span[1], self.direction, self.tiny, gap, moves
+        )
         self.keeps: bool = options.t_eval is None or options.dense_output
         self.logs = LOGGER.isEnabledFor(logging.DEBUG)  # asked once: a run without a log pays nothing for it
         self.step = step.prepare(action, self.psi, self.start, np.full(self.shape, span[0], dtype=self.dtype))
@@ -295,22 +295,14 @@ class Automaton:
 
     def _size(self, now: RunState, stops: Stops, local: LocalStep) -> Array:
         """The step size that the tolerance asks for, positive, (...,)."""
-        embedded = local.estimate_order is not None
-        left = np.abs(stops.end - now.t)
-        bound = largest_size(self.options.max_step, left)
-        first = embedded and bool(np.isinf(now.h).any())
-        needed = not embedded or first or stops.events is not None
-        scale = time_scale(self.psi.field, now.m, now.t) if needed else np.inf
-        if stops.events is not None:
-            bound = np.minimum(bound, MAX_MOVE_WITH_EVENTS * scale)
-        if first:
-            now.h = np.where(np.isinf(now.h), np.minimum(bound, FIRST_STEP_FRACTION * scale), now.h)
-        h = np.minimum(now.h, bound)
-        if not embedded:
-            speed = over_sites(length(now.m), self.axes) / scale
-            limits = StepLimits(self.tolerance.norm(now.m), speed, h, self.axes)
-            h = known_size(self.action, self.psi, local, now.m, now.t, self.step.order, limits).astype(self.dtype)
-        small = now.active & ~is_large_enough(h, self.tiny, left)
+        limits = self.limits
+        if local.estimate_order is not None and np.isinf(now.h).any():
+            now.h = np.where(np.isinf(now.h), first_size(limits, local, self.psi, now.m, now.t), now.h)
+        h, good, looks, cuts = tried_size(
+            limits, self.action, self.psi, local, self.step.order, now.m, now.t, now.h, self.psi.field
+        )
+        h = np.asarray(h).astype(self.dtype)
+        small = now.active & ~good
         if small.any():
             self._fail(now, small & np.isnan(h), PSI)
             self._fail_by_psi(now, small, TOO_SMALL)
@@ -342,11 +334,7 @@ class Automaton:
 
     def _judged(self, now: RunState, local: LocalStep, h: Array) -> BooleanArray | bool:
         """Which lanes accept the step by its estimate, all without one; adapts the next step size."""
-        if local.estimate_order is None:
-            now.h = MAX_GROWTH * np.abs(h)
-            return True
-        error = local.estimate(h[..., None])
-        accepted, now.h = judged(error, self.tolerance.norm(now.m), h, local.estimate_order, self.axes)
+        accepted, now.h = judgement(self.limits, local, now.m, h[..., None], self.axes)
         return accepted
 
     def _looked_into(self, now: RunState, stops: Stops, proposal: StepProposal) -> tuple[StepProposal, BooleanArray]:

@@ -609,16 +609,20 @@ class Corrected(Step):
     def at(self, action: Action, psi: Generator, m: Values, t: Values, *, error_terms: int = 0) -> CorrectedStep:
         base = self.step.with_exponential_of(action)
         local = base.at(action, psi, m, t)
+        flow = flow_series(psi.field, m, self._order + error_terms, t[..., 0] if np.ndim(t) else t)
         recursion = OrderRecursion(
             action,
-            flow_series(psi.field, m, self._order + error_terms, t[..., 0] if np.ndim(t) else t),
+            flow,
             local,
             m,
             orbit_dimension=psi.orbit_dimension,
             weight=self.weight,
             one_exponential=self.step.one_exponential,
         )
-        return CorrectedStep(local, correct(recursion, base.order, self._order), self)
+        raised = CorrectedStep(local, correct(recursion, base.order, self._order), self)
+        if error_terms:
+            raised.trajectory = [flow.point(k) for k in range(1, self._order + error_terms + 1)]
+        return raised
 
     def __repr__(self) -> str:
         weight = "" if self.weight is None else f", weight={self.weight!r}"

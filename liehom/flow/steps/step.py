@@ -63,6 +63,13 @@ def size_from_defects(defects: Defects, allowed: Values, speed: Values, largest:
     return h
 
 
+def length(x: Values) -> Array:
+    """2-norm over the last axis, in float64."""
+    values = floats(x)
+    root: Array = namespace(values).sqrt((values * values).sum(axis=-1))
+    return root
+
+
 def over_sites(x: Values, axes: int) -> Array:
     """Root of the sum of squares over the last axes, the sites of a lattice, repeated for each site."""
     if not axes:
@@ -117,8 +124,12 @@ class LocalStep:
     ----------
     defects : tuple of (int, array), or None
         (k, |[t^k] (flow - step)|), for the k for which it has been computed.
+    trajectory : sequence of arrays of shape (..., N)
+        The Taylor coefficients m_1, m_2, ... of the trajectory, as many as have been computed.
     estimate_order : int or None
         k if `estimate` is O(h^k); None if there is no estimate.
+    widest_gap : float
+        The longest time between two calls of psi, in units of the step, for a step with an estimate.
 
     Examples
     --------
@@ -137,7 +148,9 @@ class LocalStep:
     """
 
     defects: Defects | None = None
+    trajectory: Sequence[Values] = ()
     estimate_order: int | None = None
+    widest_gap: float = 1.0
     clock: tuple[tuple[int, Values], ...] = ()
 
     def __init__(
@@ -175,6 +188,14 @@ class LocalStep:
             return h
         known = dict(self.clock)
         return polynomial([None, 1, *(known.get(k) for k in range(2, max(known) + 1))], h)
+
+    def series(self, h: Values) -> Values:
+        """m + m_1 h + m_2 h^2 + ... by the known coefficients of the trajectory, for h (..., 1); shape (..., N)."""
+        return self.m + polynomial([None, *self.trajectory], h)
+
+    def nearby(self, h: Values) -> Values:
+        """A point next to the trajectory at the time h (..., 1): where psi is looked at."""
+        return self.series(h)
 
     def size(self, limits: StepLimits) -> Values | None:
         """Step size (...,) that is known before the step is made, at most `limits.largest`; None if it is not known.
