@@ -207,12 +207,11 @@ class ProjectedSeries(TaylorSeries):
 
     def point(self, h: Values) -> Values:
         """Point after the step of size h (..., 1), shape (..., N)."""
-        landed = self.series(h)
-        return landed if self._levels is None else self._quadrics.project(landed, self._levels)
+        return self.landed(self.series(h))
 
-    def nearby(self, h: Values) -> Values:
-        """The point after the step."""
-        return self.point(h)
+    def landed(self, point: Values) -> Values:
+        """The projection of a point (..., N) onto the level sets."""
+        return point if self._levels is None else self._quadrics.project(point, self._levels)
 
 
 @final

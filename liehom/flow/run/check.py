@@ -21,7 +21,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from liehom.base.typing import Array, BooleanArray, Real, Values
+from liehom.base.typing import Array, Real, Values
 from liehom.flow.action.field import GeneratorField
 from liehom.flow.series.arrays import is_jax, namespace
 from liehom.flow.steps.step import LocalStep, length, over_sites
@@ -55,53 +55,64 @@ def checked(
     """Sizes at most h, without sign, at which the series of a step passes all looks; below `tiny` if there are none."""
     xp, c = namespace(m, t, h), local.trajectory
     root = 1 / (len(c) + 1)
-    # round-off of X, and of the time at which it is asked for
-    drift: Any = length(c[1]) if len(c) > 1 else 0.0
-    floor: Any = 8 * float(np.finfo(np.float64).eps) * (length(c[0]) + 2 * xp.abs(t) * drift)
+    rounded: Any = length(c[0])
+    if field.time_dependent and len(c) > 1:  # the times at which X is asked for are rounded too
+        rounded = rounded + 2 * xp.abs(t) * length(c[1])
+    floor = 8 * float(np.finfo(np.float64).eps) * rounded
 
-    def body(h: Any, back: Any, pending: Any, looks: Any, cuts: Any) -> tuple[list[Any], BooleanArray]:
+    def look(wanted: Any, h: Any, back: Any) -> tuple[Any, Any]:
+        """The residual at a look, in units of what is allowed, and whether the step needs another one."""
         passed: Any = local.time(direction * h) * direction if local.clock else h
-        window: Any = xp.minimum(xp.where(passed > 0, passed, h), left)
-        s: Any = direction * xp.where(pending, window - back, 0.0)
-        near = local.nearby(s[..., None])
-        lack: Any = length(slope(c, s[..., None]) - field.vector(near, t + s)) - floor
-        residual: Any = window * over_sites(xp.maximum(lack, 0.0), axes) / allowed
-        passes = residual <= ALLOWED_RESIDUAL
-        factor: Any = 0.9 * (ALLOWED_RESIDUAL / residual) ** root
+        window: Any = xp.minimum(xp.where(passed > 0, passed, h) if local.clock else h, left)
+        s: Any = direction * xp.where(wanted, window - back, 0.0)
+        point, velocity = series_with_slope(local.m, c, s[..., None])
+        lack: Any = length(velocity - field.vector(local.landed(point), t + s)) - floor
+        residual: Any = window * over_sites(xp.maximum(lack, 0.0), axes) / (ALLOWED_RESIDUAL * allowed)
+        return residual, wanted & xp.where(residual <= 1, back + gap < window, h >= tiny)
+
+    def again(wanted: Any, h: Any, back: Any, residual: Any, looks: Any, cuts: Any) -> list[Any]:
+        passes = ~wanted | (residual <= 1)
+        factor: Any = 0.9 * residual**-root
         factor = xp.where(factor > SMALLEST_CUT, xp.minimum(factor, LARGEST_CUT), SMALLEST_CUT)
-        cut = pending & ~passes
-        looks, cuts = looks + xp.where(pending, 1.0, 0.0), cuts + xp.where(cut, 1.0, 0.0)
-        h, back = xp.where(cut, factor * h, h), xp.where(passes, back + gap, 0.0)
-        pending = pending & xp.where(passes, back < window, h >= tiny)
-        return [h, back, pending, looks, cuts], pending
+        h, back = xp.where(passes, h, factor * h), xp.where(passes, back + gap, 0.0)
+        looks, cuts = looks + xp.where(wanted, 1.0, 0.0), cuts + xp.where(passes, 0.0, 1.0)
+        residual, wanted = look(wanted, h, back)
+        return [wanted, h, back, residual, looks, cuts]
 
     zero: Any = 0.0 * h
-    size, _, _, looks, cuts = _repeated(body, [h, zero, h > 0, zero, zero])
+    residual, wanted = look(h > 0, h, zero)
+    _, size, _, _, looks, cuts = _repeated(again, [wanted, h, zero, residual, zero + 1, zero])
     return Checked(size, looks, cuts)
 
 
-def slope(coefficients: Sequence[Values], s: Values) -> Values:
-    """c_1 + 2 c_2 s + 3 c_3 s^2 + ..., for s of shape (..., 1)."""
-    total: Any = len(coefficients) * coefficients[-1]
-    for k in range(len(coefficients) - 1, 0, -1):
-        total = total * s + k * coefficients[k - 1]
-    return total  # type: ignore[no-any-return]
+def series_with_slope(m: Values, coefficients: Sequence[Values], s: Values) -> tuple[Values, Values]:
+    """m + c_1 s + c_2 s^2 + ... and its derivative c_1 + 2 c_2 s + ..., for s of shape (..., 1)."""
+    value: Any = coefficients[-1]
+    slope: Any = value
+    for c in (*coefficients[-2::-1], m):
+        value = c + value * s
+        if c is not m:
+            slope = value + slope * s
+    return value, slope
 
 
-def _repeated(body: Callable[..., tuple[list[Any], Any]], state: list[Any]) -> Sequence[Any]:
-    """The state after a loop over `body`, which tells whether to go on: of numpy, of tracers, or of JAX."""
+def _repeated(body: Callable[..., list[Any]], state: list[Any]) -> Sequence[Any]:
+    """The state after a loop while its first number, a boolean, is true somewhere: of numpy, of tracers, or of JAX."""
     first = state[0]
     if isinstance(first, Traced):
-        return while_loop(body, state, first.tape, MAX_LOOKS)
+        return while_loop(lambda *s: ((new := body(*s)), new[0]), state, first.tape, MAX_LOOKS, guarded=True)
     if is_jax(first):
         from jax import lax, numpy as jnp
 
-        go_on, known = (lambda s: jnp.any(s[2])), [x.dtype for x in state]
-        return list(lax.while_loop(go_on, lambda s: [x.astype(d) for x, d in zip(body(*s)[0], known)], state))
-    while True:
-        state, again = body(*state)
-        if not again.any():
-            return state
+        kinds = [x.dtype for x in state]
+        return list(
+            lax.while_loop(
+                lambda s: jnp.any(s[0]), lambda s: [x.astype(k) for x, k in zip(body(*s), kinds, strict=True)], state
+            )
+        )
+    while state[0].any():
+        state = body(*state)
+    return state
 
 
 def widest_gap(nodes: Sequence[float]) -> float:

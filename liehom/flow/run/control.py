@@ -102,7 +102,6 @@ def fitted(local: LocalStep, h: Array, left: Array, *, halve: bool) -> tuple[Arr
 
 FIRST_STEP_FRACTION = 0.01  # the first step of an embedded pair, in units of |m| / |X|
 MAX_PAIR_MOVE = 1.0  # with an embedded pair, the largest way of a point in a step for psi(m), in units of |m|
-NEGLIGIBLE = 0.1  # terms below this part of the allowed error are not compared with the length of the step
 MAX_PAIR_GROWTH = 5.0  # with an embedded pair, the largest ratio of the next step size to the last one
 MAX_SHRINK = 0.2  # the smallest ratio of the next step size to the last one
 ERROR_TERMS = 2  # number of Taylor coefficients of the error that are computed
@@ -185,11 +184,11 @@ def tried_size(
     if not embedded:
         known_trajectory(psi, local, m, t, order)
         allowed, speed = limits.norm(m, axes), over_sites(length(local.trajectory[0]), axes)
+        if limits.gap is not None:
+            # terms far below the allowed error are not compared with |X| h, else steps go to 0 where X does
+            speed = xp.maximum(speed, allowed / bound)
         h = known_size(action, local, m, order, StepLimits(allowed, speed, bound, axes))
         if limits.gap is not None:
-            # where X goes to 0, so do steps that are bounded by a part of |X| h
-            free = StepLimits(NEGLIGIBLE * allowed, 0 * speed, bound, axes)
-            h = xp.maximum(h, known_size(action, local, m, order, free))
             h, looks, cuts = checked(
                 looked_at, local, m, t, h, allowed, left,
                 direction=limits.direction, gap=limits.gap, tiny=limits.tiny, axes=axes,

@@ -193,9 +193,9 @@ class LocalStep:
         """m + m_1 h + m_2 h^2 + ... by the known coefficients of the trajectory, for h (..., 1); shape (..., N)."""
         return self.m + polynomial([None, *self.trajectory], h)
 
-    def nearby(self, h: Values) -> Values:
-        """A point next to the trajectory at the time h (..., 1): where psi is looked at."""
-        return self.series(h)
+    def landed(self, point: Values) -> Values:
+        """The point of the orbit next to a point (..., N) of the series, if it is quickly computed, else the point."""
+        return point
 
     def size(self, limits: StepLimits) -> Values | None:
         """Step size (...,) that is known before the step is made, at most `limits.largest`; None if it is not known.
