@@ -13,7 +13,6 @@ from liehom.base.typing import Array, BooleanArray, IntegerArray
 from liehom.flow.action.field import GeneratorField
 from liehom.flow.engines.lanes import LaneSteps, times_until
 from liehom.flow.engines.traced_step import args_of_lanes
-
 from liehom.flow.run.events import Events, Look
 from liehom.flow.run.run import Run, StepProposal
 from liehom.flow.steps.step import Generator, length

@@ -226,6 +226,7 @@ class FastPath:
         rows = int(tries.max(initial=0))
         # where steps iterate, each trajectory has its own number
         calls = extra[largest + summed.index("calls")] if graph.calls is None else tries * graph.calls
+        calls = calls + extra[largest + summed.index("looks")] if "looks" in summed else calls
         return LaneSteps(
             m=m, t=t, taken=taken.astype(int), going=alive > 0, done=np.zeros(len(lanes), dtype=bool), calls=calls,
             records=totals_of(graph, list(extra)) if rows else {}, outputs=np.zeros(0, dtype=int), points=np.zeros(0),

@@ -17,6 +17,7 @@ from liehom.flow.action.field import check_point
 from liehom.flow.action.space import Action
 from liehom.flow.engines.traced_step import totals_of
 from liehom.flow.run.options import END, EVENT
+from liehom.flow.run.records import OF_CHECK
 from liehom.flow.run.run import Run
 from liehom.flow.tracing.array import Traced
 from liehom.flow.tracing.graph import needed
@@ -59,11 +60,11 @@ GUARD_PROJECTIONS = 2  # number of random projections, one of which shows the ra
 def with_guard(graph: StepGraph, action: Action, dimension: int) -> StepGraph:
     """The graph with a `guard`: whether a point is finite and its orbit certainly of the largest dimension d, as a
     random projection of g onto d coordinates, followed by the action on the point, is injective. The number "checks" of
-    the run switches it on; graphs that record numbers, and other orbits, have none.
+    the run switches it on; graphs that record more than looks at psi, and other orbits, have none.
     """
     rng = np.random.default_rng((0, dimension))
     generic = check_point(action.representation, rng.normal(size=(4, graph.size)))
-    if graph.largest or graph.summed or graph.calls is None or dimension != int(generic.max()):
+    if graph.largest or not OF_CHECK.issuperset(graph.summed) or graph.calls is None or dimension != int(generic.max()):
         return graph
     tape: Any = graph.point[0].tape
     m: Any = Traced.inputs(tape, 0, graph.size)
@@ -246,10 +247,10 @@ def lowest_numbers(graph: StepGraph) -> dict[str, float]:
 
 def calls_of(kernel: Kernel, row: dict[str, Array], steps: npt.NDArray[Any]) -> Array:
     """Calls of psi in a given number of steps of each lane."""
-    graph = kernel.graph
-    if graph.calls is not None:
-        return np.asarray(np.multiply(steps, graph.calls, dtype=np.float64))
-    return row[f"e{len(graph.largest) + list(graph.summed).index('calls')}"]
+    graph, sums = kernel.graph, kernel.graph.summed
+    rows = {name: row[f"e{i}"] for i, name in enumerate(sums, len(graph.largest)) if name in ("calls", "looks")}
+    made = rows["calls"] if graph.calls is None else np.multiply(steps, graph.calls, dtype=np.float64)
+    return np.asarray(made + rows.get("looks", 0.0))
 
 
 def moved_rows(path: Array, n: int) -> tuple[Array, Array, Array]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Hashable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple, final
 
 import numpy as np
@@ -14,6 +14,7 @@ from liehom.base.typing import Array, BooleanArray, IntegerArray, Pytree
 from liehom.flow.engines.engine import Problem
 from liehom.flow.engines.lanes import run_blocks
 from liehom.flow.engines.traced_step import arg_values, args_form
+from liehom.flow.run.check import LOOKS
 from liehom.flow.run.options import END, MESSAGES
 from liehom.flow.run.records import Report
 from liehom.flow.run.run import Run
@@ -154,7 +155,7 @@ def plan_names(problem: Problem) -> list[Hashable]:
     if o.t_eval is not None:
         times = [{"t_eval": o.t_eval}, {"t_eval": tuple(o.t_eval.tolist())}]
     keys = [plan_key(span, start.astype(np.float64), {**s, **t}, problem.args) for s in sizes for t in times]
-    plain = o.first_step is None and np.isinf(o.max_step) and not getattr(o, "min_step", 0.0)
+    plain = o.first_step is None and np.isinf(o.max_step) and not o.min_step and o.looks == LOOKS
     plain = plain and (o.dt is None or bool((o.dt == np.max(o.dt)).all()))
     return [key for key in keys if key is not None] if plain else []
 
@@ -206,6 +207,7 @@ class Plan:
         self.extra: Array = np.ones((max(1, len(kernel.lane_constants)), self.first.shape[1]))
         self.lock = threading.Lock()
         self.alive, self.count = kernel.names.index("alive"), kernel.names.index("count")
+        self.checks = slice(i := kernel.names.index("e0"), i + 2) if kernel.graph.summed else None
         self.tries = kernel.names.index("tries") if "tries" in kernel.names else self.count
         if self.lanes <= SMALL:
             self.state, self.out = self.first.copy(), np.empty(self.out_shape)
@@ -258,13 +260,18 @@ class Plan:
             y[..., 0] = points
         y[..., int(self.starts) :] = out[self.rows, :, :lanes].transpose(2, 1, 0)
         steps: Any = self.steps if self.steps is not None else state[self.count, :lanes].astype(int)
-        calls = self.steps if self.steps is not None else int(state[self.tries, :lanes].max(initial=0))
         statuses: Any = END
         if shape:
             steps = np.full(shape, steps) if self.steps is not None else steps.reshape(shape)
             statuses = np.full(shape, END)
         elif self.steps is None:
             steps = int(steps[0])
-        calls *= self.kernel.graph.calls or 0
-        y = y.reshape((*self.shape, y.shape[-1]))
-        return Solution(self.t.copy(), y, None, None, None, calls, END, MESSAGES[END], steps, self.report, statuses)
+        made: Any = self.steps if self.steps is not None else state[self.tries, :lanes]
+        made, report = made * (self.kernel.graph.calls or 0), self.report
+        if self.checks is not None:
+            looks, cuts = state[self.checks, :lanes]
+            made, total, cut = made + looks, int(looks.sum()), int(cuts.sum())
+            if (total, cut) != (report.looks, report.cuts):
+                report = replace(report, looks=total, cuts=cut)
+        calls, y = int(np.max(made, initial=0)), y.reshape((*self.shape, y.shape[-1]))
+        return Solution(self.t.copy(), y, None, None, None, calls, END, MESSAGES[END], steps, report, statuses)

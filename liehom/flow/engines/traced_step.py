@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Sequence
 from functools import reduce
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -27,8 +27,7 @@ from liehom.flow.run.control import (
     tried_size,
 )
 from liehom.flow.run.records import LOST, bounds_of, earliness
-from liehom.flow.series.arrays import namespace
-from liehom.flow.steps.step import Generator, LocalStep, Step, StepLimits, over_sites
+from liehom.flow.steps.step import Generator, LocalStep, Step
 from liehom.flow.tracing.array import Traced
 from liehom.flow.tracing.graph import Expr, Tape
 from liehom.flow.tracing.loop import Sizes, StepGraph, while_loop

@@ -17,6 +17,7 @@ say what they know of it.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -60,7 +61,7 @@ def checked(
         rounded = rounded + 2 * xp.abs(t) * length(c[1])
     floor = 8 * float(np.finfo(np.float64).eps) * rounded
 
-    def look(wanted: Any, h: Any, back: Any) -> tuple[Any, Any]:
+    def look(wanted: Values, h: Values, back: Values) -> tuple[Values, Values]:
         """The residual at a look, in units of what is allowed, and whether the step needs another one."""
         passed: Any = local.time(direction * h) * direction if local.clock else h
         window: Any = xp.minimum(xp.where(passed > 0, passed, h) if local.clock else h, left)
@@ -70,7 +71,7 @@ def checked(
         residual: Any = window * over_sites(xp.maximum(lack, 0.0), axes) / (ALLOWED_RESIDUAL * allowed)
         return residual, wanted & xp.where(residual <= 1, back + gap < window, h >= tiny)
 
-    def again(wanted: Any, h: Any, back: Any, residual: Any, looks: Any, cuts: Any) -> list[Any]:
+    def again(wanted: Values, h: Values, back: Values, residual: Values, looks: Values, cuts: Values) -> list[Values]:
         passes = ~wanted | (residual <= 1)
         factor: Any = 0.9 * residual**-root
         factor = xp.where(factor > SMALLEST_CUT, xp.minimum(factor, LARGEST_CUT), SMALLEST_CUT)
@@ -118,4 +119,4 @@ def _repeated(body: Callable[..., list[Any]], state: list[Any]) -> Sequence[Any]
 def widest_gap(nodes: Sequence[float]) -> float:
     """The largest distance between two times at which a method asks psi, in units of its step, by its nodes c_i."""
     times = sorted({min(max(float(c), 0.0), 1.0) for c in nodes})
-    return max([b - a for a, b in zip(times, times[1:])] + [1 - times[-1] + times[0]], default=1.0)
+    return max([b - a for a, b in pairwise(times)] + [1 - times[-1] + times[0]], default=1.0)

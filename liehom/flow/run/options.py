@@ -73,12 +73,21 @@ class Options:
         """Name of the option `clock`, "nominal" or "corrected"."""
         return "nominal" if self.nominal else "corrected"
 
+    def check(self, time_dependent: bool) -> str:
+        """How steps of adaptive sizes are checked, a clause; empty for fixed sizes."""
+        if self.dt is not None:
+            return ""
+        if not self.looks:
+            return "not checked (looks=0)"
+        return "psi looked at in each step" + f" and {self.looks} times across the span" * time_dependent
+
     def fixed_text(self) -> str:
         """String of the scalar options that must not change when a run is continued."""
         return (
             f"{'adaptive' if self.dt is None else 'fixed'} {self.rtol} {self.atol} "
             f"{'steps' if self.t_eval is None else 't_eval'} {self.dense_output} "
-            f"{self.clock} {self.max_step} {self.first_step}" + (f" {self.min_step}" if self.min_step else "")
+            f"{self.clock} {self.max_step} {self.first_step}"
+            + (f" {self.min_step}" if self.min_step else "")
             + (f" looks {self.looks}" if self.dt is None else "")
         )
 

@@ -134,6 +134,11 @@ class Report:
     diagnostics : tuple of (str, str, float)
         (name, "max", "min" or "sum", total) of the other numbers that steps report (`LocalStep.diagnostics`), over all
         steps of all trajectories.
+    check : str
+        How psi is looked at within steps of adaptive sizes (`looks` of `integrate`); empty for fixed sizes.
+    looks, cuts : int
+        Number of looks at psi within steps, and how often one made a size smaller, over all steps of all trajectories.
+        0 for methods that ask psi at stages, and on JAX arrays, where they are not counted.
     range_condition : bool or None
         Whether every correction could be solved and no step came near the cone; None for steps without correction.
 
@@ -169,6 +174,9 @@ class Report:
     unkept_from: float | None = None
     stopped_at: float | None = None
     diagnostics: tuple[tuple[str, str, float], ...] = ()
+    check: str = ""
+    looks: int = 0
+    cuts: int = 0
 
     @property
     def range_condition(self) -> bool | None:
@@ -184,6 +192,9 @@ class Report:
         lines = [f"{self.step} with {self.exponential}, clock {self.clock}"]
         conserved = [] if self.conservation is None else [str(self.conservation)]
         others = [f"{name}, {TOTALS[kind]}: {value:.6g}" for name, kind, value in self.diagnostics]
+        if self.check:
+            made = f"; {self.looks} looks, {self.cuts} sizes cut" if self.looks else ""
+            others.append(f"sizes by the tolerance, {self.check}{made}")
         if self.range_condition is None:
             return "\n".join([*lines, f"order {self.order}, no correction", *conserved, *others])
         until = "" if self.stopped_at is None else f" up to t = {self.stopped_at:.6g}"
@@ -218,6 +229,8 @@ NEUTRAL = {"max": -np.inf, "min": np.inf, "sum": 0.0}  # the total of a diagnost
 LOST = "lost"  # the diagnostic that says whether a step misses its order: its first time is recorded, and not its total
 OF_CORRECTIONS = ("equilibria", "failed", "near", "short", "residual", "singular", "rank")
 """Diagnostics of a corrected step, which have entries of their own in a `Report`."""
+OF_CHECK = frozenset(["looks", "cuts"])
+"""Sums over steps, of the looks at psi within steps and of the sizes that they cut: entries of a `Report`."""
 OF_CONSERVATION = "conservation_"  # prefix of the diagnostics of a conserving step
 
 
@@ -327,6 +340,7 @@ class StepStatistics:
         orbit_dimension: int | IntegerArray,
         direction: float = 1.0,
         stopped_at: float | None = None,
+        check: str = "",
     ) -> Report:
         """The statistics as a `Report`."""
         from_times = direction * self._unkept_from
@@ -351,6 +365,9 @@ class StepStatistics:
             unkept_from=None if bool(np.isnan(from_times).all()) else direction * float(np.nanmin(from_times)),
             stopped_at=stopped_at,
             diagnostics=self._others(),
+            check=check,
+            looks=self._count("looks"),
+            cuts=self._count("cuts"),
         )
 
     def _conservation(self) -> ConservationReport | None:
@@ -377,7 +394,7 @@ class StepStatistics:
         return tuple(
             (name, kind, float(getattr(total, kind)()))
             for (kind, _, name), total in ((key.partition("."), total) for key, total in self._totals.items())
-            if name not in OF_CORRECTIONS and not name.startswith(OF_CONSERVATION)
+            if name not in OF_CORRECTIONS and name not in OF_CHECK and not name.startswith(OF_CONSERVATION)
         )
 
     # -- checkpoints -------------------------------------------------------------------------------------

@@ -244,6 +244,7 @@ class Automaton:
         self.tiny = max(float(self.rest), options.least_step)  # the smallest step size
         gap = gap_of(options.looks, span[1] - span[0], psi.field)
         moves = np.inf if options.events is None else MAX_MOVE_WITH_EVENTS
+        self.looked: Diagnostics = {}  # what the last step was checked by
         self.limits: SizeLimits = SizeLimits(
             options.rtol, options.atol, options.max_step, span[1], self.direction, self.tiny, gap, moves
         )
@@ -278,7 +279,7 @@ class Automaton:
         self.tried = local, h
         reached: Any = local.point(h[..., None])
         moves = now.active & self._judged(now, local, h) if adaptive else now.active
-        diagnostics = local.diagnostics(h[..., None])
+        diagnostics = {**local.diagnostics(h[..., None]), **self.looked}
         good = np.isfinite(reached).all(axis=-1)
         usable = ~whole_lattice(~(good & local.valid(h[..., None])), self.axes)
         if not usable.all():
@@ -302,6 +303,7 @@ class Automaton:
             limits, self.action, self.psi, local, self.step.order, now.m, now.t, now.h, self.psi.field
         )
         h = np.asarray(h).astype(self.dtype)
+        self.looked = {"looks": (looks, "sum"), "cuts": (cuts, "sum")}
         small = now.active & ~good
         if small.any():
             self._fail(now, small & np.isnan(h), PSI)
@@ -545,7 +547,14 @@ class Run(Automaton):
             status=ended.status,
             message=ended.message,
             n_steps=now.taken if self.shape else int(now.taken),
-            report=record.report(self.action, o.clock, self.psi.orbit_dimension, direction, ended.stopped_at),
+            report=record.report(
+                self.action,
+                o.clock,
+                self.psi.orbit_dimension,
+                direction,
+                ended.stopped_at,
+                check=o.check(self.field.time_dependent),
+            ),
             statuses=ended.statuses if self.shape else ended.status,
         )
         return with_steps(solution, dense) if self.keeps else solution
