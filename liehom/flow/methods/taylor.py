@@ -23,7 +23,7 @@ from liehom.flow.action.space import Action
 from liehom.flow.series.arrays import is_traced, namespace
 from liehom.flow.series.jet import Jet
 from liehom.flow.steps.corrected import least_generator
-from liehom.flow.steps.expansion import Flow, flow_series
+from liehom.flow.steps.expansion import flow_series
 from liehom.flow.steps.step import (
     SERIES_FRACTION,
     Generator,
@@ -121,10 +121,14 @@ class Taylor(Step):
         if self._landing is None:
             return self.prepare(action, psi, m, t).at(action, psi, m, t, error_terms=error_terms)
         flow = flow_series(psi.field, m, self.order, t[..., 0] if np.ndim(t) else t)
+        points = [flow.point(k) for k in range(1, self.order + 1)]
+        velocity = [flow.psi(k) for k in range(self.order)]
+        if error_terms and isinstance(m, np.ndarray):  # psi = sqrt(t) has no derivative at 0, and steps by tolerance
+            points, velocity = _finite(points), _finite(velocity)
         quadrics, inverse = self._landing
         if quadrics is None:
-            return LandedSeries(action, m, flow, self.order, psi.orbit_dimension, inverse)
-        return ProjectedSeries(action, m, flow, self.order, quadrics, psi.start)
+            return LandedSeries(action, m, points, velocity, psi.orbit_dimension, inverse)
+        return ProjectedSeries(action, m, points, quadrics, psi.start)
 
     @property
     def trace_key(self) -> Hashable:
@@ -145,9 +149,9 @@ class Taylor(Step):
 class TaylorSeries(LocalStep):
     """The Taylor polynomial of the trajectory at one point, next to the orbit."""
 
-    def __init__(self, action: Action, m: Values, flow: Flow, order: int) -> None:
+    def __init__(self, action: Action, m: Values, coefficients: Sequence[Values]) -> None:
         super().__init__(action, m)
-        self.trajectory = [flow.point(k) for k in range(1, order + 1)]
+        self.trajectory = coefficients
 
     def size(self, limits: StepLimits) -> Array:
         """Largest size (...,) at which the last two terms, and those of the upper half of the orders as the last may
@@ -194,9 +198,9 @@ class ProjectedSeries(TaylorSeries):
     """The Taylor polynomial, projected onto level sets of quadratic forms."""
 
     def __init__(
-        self, action: Action, m: Values, flow: Flow, order: int, quadrics: Quadrics, start: Values | None
+        self, action: Action, m: Values, coefficients: Sequence[Values], quadrics: Quadrics, start: Values | None
     ) -> None:
-        super().__init__(action, m, flow, order)
+        super().__init__(action, m, coefficients)
         self._quadrics = quadrics
         self._levels: Values | None = None
         if quadrics.blocks and isinstance(m, Traced):  # computed once for each trajectory
@@ -222,17 +226,16 @@ class LandedSeries(TaylorSeries):
         self,
         action: Action,
         m: Values,
-        flow: Flow,
-        order: int,
+        coefficients: Sequence[Values],
+        velocity: Sequence[Values],
         orbit_dimension: int | IntegerArray,
         inverse: TightInverse | None = None,
     ) -> None:
-        super().__init__(action, m, flow, order)
-        self._dimension, self._inverse = orbit_dimension, inverse
-        self._velocity = [flow.psi(k) for k in range(order)]
+        super().__init__(action, m, coefficients)
+        self._dimension, self._inverse, self._velocity = orbit_dimension, inverse, velocity
         magnus = MAGNUS_ORDER if isinstance(action.exponential, TrueExponential) else SECOND_ORDER
         # corrections of eta: with q - 1 the order of Exp(xi(h)) m, the error is O(h^(q (j + 1))) after j of them
-        self.iterations: int = ceil((order + 1) / (magnus + 1)) - 1
+        self.iterations: int = ceil((len(coefficients) + 1) / (magnus + 1)) - 1
 
     def generator(self, h: Values) -> Values:
         """xi(h) = M_0 - [M_0, M_1] for h of shape (..., 1), shape (..., dim g)."""
@@ -266,6 +269,19 @@ class LandedSeries(TaylorSeries):
             return lambda v: inverse.lifted(self.action, point, v, over)
         frame = self.action.isotropy_frame(point, self._dimension)
         return lambda v: least_generator(frame, v)
+
+
+def _finite(coefficients: list[Values]) -> list[Values]:
+    """The coefficients (..., N) of series, which end before the first one that is not finite."""
+    last: Any = coefficients[-1]
+    if np.isfinite(last).all():  # after a coefficient that is not finite none is
+        return coefficients
+    good: Any = True
+    ended: list[Any] = []
+    for c in coefficients:
+        good = good & np.isfinite(c).all(axis=-1, keepdims=True) if ended else True
+        ended.append(np.where(good, c, 0.0))
+    return ended
 
 
 def _level(quadrics: Quadrics, index: int) -> Callable[[Array], Array]:
