@@ -70,11 +70,9 @@ class Taylor(Step):
     * Otherwise by two exponentials, Exp(eta) Exp(xi) m. Here xi is the Magnus series of order 4 of the psi_i, and eta
       is the generator of minimal norm that moves Exp(xi) m to the series, in ceil((n + 1) / 5) - 1 iterations.
 
-    An adaptive step size follows from the last two coefficients, without rejection: the terms m_(n-1) h^(n-1) and
-    m_n h^n are at most the tolerance, which is then far above what is left out. These coefficients are those at the
-    initial point of the step. If psi has a jump or a kink within the step, they do not show it. The points stay on the
-    orbit, but order and tolerance are not kept in that step. End the run at such a time and start it again, give
-    `max_step`, or take `RKMK` with an embedded pair.
+    An adaptive step size follows from the last two coefficients: the terms m_(n-1) h^(n-1) and m_n h^n are at most the
+    tolerance, which is then far above what is left out. These coefficients are those at the initial point of the step,
+    so psi is looked at within the step before it is taken (`looks` of `liehom.integrate`, docs/step-sizes.md).
 
     Examples
     --------

@@ -71,6 +71,9 @@ def integrate(
         with status -1.
     max_steps : int
         The largest number of steps of a trajectory; at that number it ends with status -1.
+    looks : int
+        How often psi(m, t) is looked at across the time span, besides once in each step, before adaptive steps are taken
+        (default 128). A feature of psi that is longer than (t_1 - t_0)/looks is seen. 0 switches the check off.
     progress : bool or callable
         A progress bar on standard error, or a function of the fraction done.
     checkpoint : path, optional
@@ -113,8 +116,9 @@ def integrate(
     different numbers of steps, t and y are filled up with NaN unless `t_eval` is given.
 
     An adaptive step size follows from the estimate of an embedded pair, or from the Taylor coefficients of the error at
-    the initial point of a step. Taylor coefficients do not show a jump of psi, a pulse that is shorter than a step, or
-    a term such as t^20 at t = 0: for those take a pair such as ``step="rk45"``, or `max_step`.
+    the initial point of a step. Before the step is taken, psi is looked at within it, and the size is cut if psi is not
+    what the estimate assumes: pulses, ramps, switches and walls are seen if they are longer than the time between two
+    looks. No method sees what lies between its looks: give `max_step` for a shorter pulse (docs/step-sizes.md).
 
     A trajectory ends with status -1, and with the points computed so far, if psi is not finite, the step size is below
     round-off, τ does not increase at a rate between 1/5 and 5 over the step, the equations of an implicit step have no

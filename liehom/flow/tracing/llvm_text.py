@@ -152,6 +152,54 @@ def define_rotation(w: Writer) -> None:
     w.declared |= f.declared
 
 
+# sin(x) and cos(x) in LLVM assembly: x minus the nearest multiple of pi/2, which is subtracted in three parts, and the
+# polynomials above. For large x the product of the multiple and the first part is rounded: libm is used.
+
+HALF_PI = (float.fromhex("0x1.921fb544p+0"), float.fromhex("0x1.0b4611a6p-34"), float.fromhex("0x1.3198a2e037073p-69"))
+"""pi/2 in parts, of which the first two have 33 bits."""
+LARGEST_ANGLE = 1e6
+
+
+def define_turn(w: Writer) -> None:
+    """Write the function x -> (sin(x), cos(x)), if it is not there."""
+    if "turn" in w.functions:
+        return
+    f = Writer(w.width)
+    v, pair = f.vector, f"{{{f.vector}, {f.vector}}}"
+    f.lines += ["  br label %start", "start:"]
+    quarters = f.intrinsic("rint", f.binary("fmul", "%x", f.splat(2 / math.pi)))
+    rest = "%x"
+    for part in HALF_PI:
+        rest = f.binary("fsub", rest, f.binary("fmul", quarters, f.splat(part)))
+    square = f.binary("fmul", rest, rest)
+    reach = (math.pi / 4) ** 2
+    sine = f.binary("fmul", f.polynomial(rotation_series(reach, 1), square), rest)
+    cosine = f.polynomial(rotation_series(reach, 0), square)
+    whole = f.intrinsic("rint", f.binary("fmul", quarters, f.splat(0.25)))
+    place = f.binary("fsub", quarters, f.binary("fmul", whole, f.splat(4.0)))  # -2, -1, 0, 1 or 2
+    odd = f.emit(f"fcmp oeq {v} {f.intrinsic('fabs', place)}, {f.splat(1.0)}")
+    half = f.emit(f"fcmp oeq {v} {f.intrinsic('fabs', place)}, {f.splat(2.0)}")
+    values = []
+    for even_part, odd_part, quarter in ((sine, cosine, -1.0), (cosine, sine, 1.0)):
+        value = f.emit(f"select {f.mask} {odd}, {v} {odd_part}, {v} {even_part}")
+        turned = f.emit(f"fcmp oeq {v} {place}, {f.splat(quarter)}")
+        negative = f.emit(f"or {f.mask} {half}, {turned}")
+        values.append(f.emit(f"select {f.mask} {negative}, {v} {f.emit(f'fneg {v} {value}')}, {v} {value}"))
+    large = f.emit(f"fcmp ugt {v} {f.intrinsic('fabs', '%x')}, {f.splat(LARGEST_ANGLE)}")
+    f.lines += [f"  br i1 {f.any(large)}, label %far, label %done, !prof !0", "far:"]
+    far = [
+        f.emit(f"select {f.mask} {large}, {v} {f.library(name, '%x')}, {v} {value}")
+        for name, value in zip(("sin", "cos"), values, strict=True)
+    ]
+    f.lines += ["  br label %done", "done:"]
+    chosen = [f.emit(f"phi {v} [{a}, %start], [{b}, %far]") for a, b in zip(values, far, strict=True)]
+    first = f.emit(f"insertvalue {pair} poison, {v} {chosen[0]}, 0")
+    both = f.emit(f"insertvalue {pair} {first}, {v} {chosen[1]}, 1")
+    head = f"define internal {pair} @turn({v} %x) alwaysinline {{\nentry:"
+    w.functions["turn"] = "\n".join([head, *f.lines, f"  ret {pair} {both}", "}"])
+    w.declared |= f.declared
+
+
 def _by_library(f: Writer, size: str) -> list[str]:
     """Names of sin(r)/r and cos(r) by libm; lanes with small r use the series."""
     v = f.vector
@@ -355,7 +403,7 @@ class Body:
     def __init__(self, writer: Writer, inputs: dict[int, str]) -> None:
         self.writer, self._inputs = writer, inputs
         self._names: dict[int, str] = {}
-        self._pairs: dict[int, tuple[str, str]] = {}
+        self._pairs: dict[tuple[str, int], tuple[str, str]] = {}
         self._loops: dict[int, list[str]] = {}
 
     def write(self, exprs: Sequence[Expr]) -> None:
@@ -382,7 +430,9 @@ class Body:
             case "add" | "sub" | "mul" | "div":
                 return w.binary("f" + x.op, *args)
             case "sinq" | "cosq":
-                return self._rotation(x.args[0], args[0])[x.op == "cosq"]
+                return self._pair("rotation", x.args[0], args[0])[x.op == "cosq"]
+            case "sin" | "cos":
+                return self._pair("turn", x.args[0], args[0])[x.op == "cos"]
             case "sqrt" | "abs":
                 return w.intrinsic("fabs" if x.op == "abs" else "sqrt", *args)
             case "expv":
@@ -437,12 +487,13 @@ class Body:
         self._loops[x.index] = new
         return ""
 
-    def _rotation(self, q: Expr, name: str) -> tuple[str, str]:
-        """Names of sin(r)/r and cos(r), computed together."""
-        if q.index not in self._pairs:
+    def _pair(self, function: str, x: Expr, name: str) -> tuple[str, str]:
+        """Names of both results of `rotation` or `turn`, computed together."""
+        key = function, x.index
+        if key not in self._pairs:
             w = self.writer
-            define_rotation(w)
+            (define_rotation if function == "rotation" else define_turn)(w)
             kind = struct_of(w, 2)
-            pair = w.emit(f"call {kind} @rotation({w.vector} {name})")
-            self._pairs[q.index] = (w.emit(f"extractvalue {kind} {pair}, 0"), w.emit(f"extractvalue {kind} {pair}, 1"))
-        return self._pairs[q.index]
+            pair = w.emit(f"call {kind} @{function}({w.vector} {name})")
+            self._pairs[key] = (w.emit(f"extractvalue {kind} {pair}, 0"), w.emit(f"extractvalue {kind} {pair}, 1"))
+        return self._pairs[key]
