@@ -72,8 +72,8 @@ def integrate(
     max_steps : int
         The largest number of steps of a trajectory; at that number it ends with status -1.
     looks : int
-        How often psi(m, t) is looked at across the time span, besides once in each step, before adaptive steps are taken
-        (default 128). A feature of psi that is longer than (t_1 - t_0)/looks is seen. 0 switches the check off.
+        How often psi(m, t) is looked at across the time span, besides once in each step, before adaptive steps are
+        taken (default 128). A feature longer than the time between two looks is seen. 0 switches the check off.
     progress : bool or callable
         A progress bar on standard error, or a function of the fraction done.
     checkpoint : path, optional

@@ -127,9 +127,7 @@ def test_the_report_says_how_sizes_were_checked() -> None:
     field = SMOOTH["turning field"]
     text = str(lh.integrate(field, (0, 10), START).report)
     assert "psi looked at in each step and 128 times across the span; " in text and "0 sizes cut" in text
-    assert (
-        "psi looked at in each step\n" in str(lh.integrate(SMOOTH["body"], (0, 10), START, step="rk45").report) + "\n"
-    )
+    assert str(lh.integrate(SMOOTH["body"], (0, 10), START, step="rk45").report).endswith("psi looked at in each step")
     assert "looked" not in str(lh.integrate(field, (0, 10), START, dt=0.1).report)
     with pytest.raises(InputError, match="looks is -1, expected an integer"):
         lh.integrate(field, (0, 10), START, looks=-1)
