@@ -38,7 +38,7 @@ class SharedOptions(TypedDict, total=False):
     min_step: float
     first_step: float | None
     max_steps: int
-    looks: int
+    looks: int | None
 
 
 class FileOptions(TypedDict, total=False):
@@ -195,8 +195,10 @@ def positive(name: str, value: float, *, zero: bool = False) -> float:
     return number
 
 
-def number_of_looks(looks: int) -> int:
+def number_of_looks(looks: int | None) -> int | None:
     """The option `looks`, checked."""
+    if looks is None:
+        return None
     if isinstance(looks, bool) or not isinstance(looks, int | np.integer) or looks < 0:
         raise InputError(f"looks is {displayed(looks)}, expected an integer: how often psi is looked at, 0 for never")
     return int(looks)

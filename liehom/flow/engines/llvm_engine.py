@@ -36,6 +36,7 @@ from liehom.flow.engines.lanes import (
 from liehom.flow.engines.lattice import LatticeStep, lattice_step, solved_on_lattice
 from liehom.flow.engines.plan import Plan, RunSchedule, Schedule, plan_key, plan_names
 from liehom.flow.engines.traced_step import arg_values, args_form, args_of_lanes, traced_step
+from liehom.flow.run.check import is_unbounded
 from liehom.flow.run.options import END
 from liehom.flow.run.records import bounds_of
 from liehom.flow.run.run import Run
@@ -143,7 +144,7 @@ class CodeStore:
         frame = None if tight is None else (tight.symmetric, round(float(tight.isotropy), 9))
         uniform = o.dt is not None and bool((o.dt == np.max(o.dt, initial=0.0)).all())
         args, lead = run.field.args, len(run.shape)
-        bounds = o.dt is None and (run.limits.moves, run.limits.gap is None)
+        bounds = o.dt is None and (run.limits.moves, run.limits.gap is None, is_unbounded(run.limits.gap))
         key = (dimension, uniform, bounds, o.nominal, run.step.trace_key, frame, args_form(args, lead))
         if key not in self.graphs:
             limits = run.limits if o.dt is None else None

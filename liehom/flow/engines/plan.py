@@ -14,7 +14,6 @@ from liehom.base.typing import Array, BooleanArray, IntegerArray, Pytree
 from liehom.flow.engines.engine import Problem
 from liehom.flow.engines.lanes import run_blocks
 from liehom.flow.engines.traced_step import arg_values, args_form
-from liehom.flow.run.check import LOOKS
 from liehom.flow.run.options import END, MESSAGES
 from liehom.flow.run.records import Report
 from liehom.flow.run.run import Run
@@ -155,7 +154,7 @@ def plan_names(problem: Problem) -> list[Hashable]:
     if o.t_eval is not None:
         times = [{"t_eval": o.t_eval}, {"t_eval": tuple(o.t_eval.tolist())}]
     keys = [plan_key(span, start.astype(np.float64), {**s, **t}, problem.args) for s in sizes for t in times]
-    plain = o.first_step is None and np.isinf(o.max_step) and not o.min_step and o.looks == LOOKS
+    plain = o.first_step is None and np.isinf(o.max_step) and not o.min_step and o.looks is None
     plain = plain and (o.dt is None or bool((o.dt == np.max(o.dt)).all()))
     return [key for key in keys if key is not None] if plain else []
 

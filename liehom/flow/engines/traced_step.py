@@ -14,6 +14,7 @@ from liehom.base.typing import Array, IntegerArray, Pytree, Real, Values
 from liehom.flow.action.field import GeneratorField
 from liehom.flow.action.frames import tight_frame
 from liehom.flow.action.space import Action
+from liehom.flow.run.check import is_unbounded
 from liehom.flow.run.control import (
     ERROR_TERMS,
     MAX_RATE,
@@ -222,7 +223,7 @@ def _all_of(tape: Tape, conditions: Sequence[Expr]) -> Expr | None:
 
 def _traced_limits(tape: Tape, limits: SizeLimits) -> SizeLimits:
     """The numbers of the limits by name, as constants of the run; `moves` as it is, and a gap that is no number."""
-    fixed = {"moves"} if limits.gap is not None and limits.gap < np.inf else {"moves", "gap"}
+    fixed = {"moves", "gap"} if limits.gap is None or is_unbounded(limits.gap) else {"moves"}
     return limits._replace(
         **{k: Traced(tape, tape.run_constant(k, x)) for k, x in limits._asdict().items() if k not in fixed}
     )

@@ -56,7 +56,9 @@ class Euler(OneExponential):
 
     def at(self, action: Action, psi: Generator, m: Values, t: Values, *, error_terms: int = 0) -> LocalStep:
         velocity = psi(m, t)  # once for all h
-        return LocalStep(action, m, lambda h: (h * velocity,))
+        local = LocalStep(action, m, lambda h: (h * velocity,))
+        local.quick = True
+        return local
 
 
 @final
@@ -140,7 +142,7 @@ class LieTaylor(OneExponential):
             coefficients = [series.coefficient(k) for k in range(1, self.order + 1)]
         local = _Polynomial(action, m, coefficients)
         if error_terms:
-            local.trajectory = [flow.point(k) for k in range(1, self.order + error_terms + 1)]
+            flow.note(local, self.order + error_terms)
             step = step_series(action, local, m, self.order + error_terms)
             local.defects = tuple(
                 (k, namespace(m).linalg.norm(flow.point(k) - step.coefficient(k), axis=-1))
@@ -152,6 +154,8 @@ class LieTaylor(OneExponential):
 @final
 class _Polynomial(LocalStep):
     """xi(h) = xi_1 h + ... + xi_n h^n."""
+
+    quick = True
 
     def __init__(self, action: Action, m: Values, coefficients: Sequence[Values]) -> None:
         super().__init__(action, m)

@@ -190,6 +190,10 @@ class TaylorSeries(LocalStep):
             worst, first = xp.sqrt(worst), first // 2
         return h / worst
 
+    def series(self, h: Values) -> Values:
+        """m_0 + m_1 h + ... + m_n h^n for h of shape (..., 1), shape (..., N)."""
+        return self.m + polynomial([None, *self.trajectory], h)
+
 
 @final
 class ProjectedSeries(TaylorSeries):
@@ -209,10 +213,13 @@ class ProjectedSeries(TaylorSeries):
 
     def point(self, h: Values) -> Values:
         """Point after the step of size h (..., 1), shape (..., N)."""
-        return self.landed(self.series(h))
+        return self._landed(self.series(h))
 
-    def landed(self, point: Values) -> Values:
-        """The projection of a point (..., N) onto the level sets."""
+    def look(self, h: Values, time: Values) -> tuple[Values, Values]:
+        point, velocity = super().look(h, time)
+        return self._landed(point), velocity
+
+    def _landed(self, point: Values) -> Values:
         return point if self._levels is None else self._quadrics.project(point, self._levels)
 
 

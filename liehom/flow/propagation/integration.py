@@ -71,9 +71,10 @@ def integrate(
         with status -1.
     max_steps : int
         The largest number of steps of a trajectory; at that number it ends with status -1.
-    looks : int
-        How often psi(m, t) is looked at across the time span, besides once in each step, before adaptive steps are
-        taken (default 128). A feature longer than the time between two looks is seen. 0 switches the check off.
+    looks : int, optional
+        How often psi is looked at across the time span, besides once in each step, before adaptive steps are taken. A
+        feature longer than the time between two looks is seen. 0 switches the check off (default: 128 for psi(m, t),
+        and no more than once in each step for psi(m)).
     progress : bool or callable
         A progress bar on standard error, or a function of the fraction done.
     checkpoint : path, optional

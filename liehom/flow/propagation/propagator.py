@@ -44,7 +44,6 @@ from liehom.flow.engines.sensitivity import Sensitivity
 from liehom.flow.methods.low_order import LieTaylor
 from liehom.flow.methods.stability import warn_of_stiffness
 from liehom.flow.methods.taylor import Taylor
-from liehom.flow.run.check import LOOKS
 from liehom.flow.run.events import EventFunction
 from liehom.flow.run.options import Options, Span, points_of, span_of
 from liehom.flow.run.solution import Solution, checked_path, warn_of_order
@@ -381,7 +380,7 @@ class Propagator:
         min_step: float = 0.0,
         first_step: float | None = None,
         max_steps: int = 10_000_000,
-        looks: int = LOOKS,
+        looks: int | None = None,
         progress: bool | Callable[[float], object] = False,
         checkpoint: str | os.PathLike[str] | None = None,
         checkpoint_every: float = 30.0,

@@ -29,11 +29,12 @@ from liehom.flow.steps.step import LocalStep, length, over_sites
 from liehom.flow.tracing.array import Traced
 from liehom.flow.tracing.loop import while_loop
 
-LOOKS = 128  # looks across the span, for psi(m, t); one at the end of each step for psi(m)
+LOOKS = 128  # looks across the span, by default for psi(m, t); for psi(m) there is one at the end of each step
 OFFSET = 0.382  # added to their number, so that looks do not fall on the times at which a periodic pulse vanishes
 ALLOWED_RESIDUAL = 30.0  # of a series, in units of the error that is allowed
 SMALLEST_CUT, LARGEST_CUT = 0.1, 0.8  # bounds of the factor by which a size is cut
 MAX_LOOKS = 1_000_000  # within one step
+FITS = 3  # iterations for the size of a step with a time of its own that comes to the end of the span
 
 
 class Checked(NamedTuple):
@@ -44,9 +45,16 @@ class Checked(NamedTuple):
     cuts: Array
 
 
-def gap_of(looks: int, span: Real, field: GeneratorField) -> Real | None:
-    """The longest time between two looks: inf for psi(m), None if there are no looks."""
-    return None if looks == 0 else abs(span) / (looks + OFFSET) if field.time_dependent else np.inf
+def gap_of(looks: int | None, span: Real, field: GeneratorField) -> Real | None:
+    """The longest time between two looks: None if there are none, inf if there is one in a step."""
+    if looks is None:
+        looks = LOOKS if field.time_dependent else -1
+    return None if looks == 0 else float("inf") if looks < 0 else abs(span) / (looks + OFFSET)
+
+
+def is_unbounded(gap: Real | None) -> bool:
+    """Whether a gap bounds no time; False for a traced number."""
+    return isinstance(gap, float) and gap == float("inf")
 
 
 def checked(
@@ -63,13 +71,12 @@ def checked(
 
     def look(wanted: Values, h: Values, back: Values) -> tuple[Values, Values]:
         """The residual at a look, in units of what is allowed, and whether the step needs another one."""
-        passed: Any = local.time(direction * h) * direction if local.clock else h
-        window: Any = xp.minimum(xp.where(passed > 0, passed, h) if local.clock else h, left)
-        s: Any = direction * xp.where(wanted, window - back, 0.0)
-        point, velocity = series_with_slope(local.m, c, s[..., None])
-        lack: Any = length(velocity - field.vector(local.landed(point), t + s)) - floor
-        residual: Any = window * over_sites(xp.maximum(lack, 0.0), axes) / (ALLOWED_RESIDUAL * allowed)
-        return residual, wanted & xp.where(residual <= 1, back + gap < window, h >= tiny)
+        s: Any = direction * xp.where(wanted, h - back, 0.0)
+        time: Any = direction * xp.minimum(direction * local.time(s), left) if local.clock else s
+        point, velocity = local.look(s[..., None], time[..., None])
+        lack: Any = length(velocity - field.vector(point, t + time)) - floor
+        residual: Any = h * over_sites(xp.maximum(lack, 0.0), axes) / (ALLOWED_RESIDUAL * allowed)
+        return residual, wanted & xp.where(residual <= 1, back + gap < h, h >= tiny)
 
     def again(wanted: Values, h: Values, back: Values, residual: Values, looks: Values, cuts: Values) -> list[Values]:
         passes = ~wanted | (residual <= 1)
@@ -77,24 +84,19 @@ def checked(
         factor = xp.where(factor > SMALLEST_CUT, xp.minimum(factor, LARGEST_CUT), SMALLEST_CUT)
         h, back = xp.where(passes, h, factor * h), xp.where(passes, back + gap, 0.0)
         looks, cuts = looks + xp.where(wanted, 1.0, 0.0), cuts + xp.where(passes, 0.0, 1.0)
-        residual, wanted = look(wanted, h, back)
-        return [wanted, h, back, residual, looks, cuts]
+        new, wanted_again = look(wanted, h, back)
+        return [wanted_again, h, back, xp.where(wanted, new, residual), looks, cuts]
 
-    zero: Any = 0.0 * h
-    residual, wanted = look(h > 0, h, zero)
-    _, size, _, _, looks, cuts = _repeated(again, [wanted, h, zero, residual, zero + 1, zero])
-    return Checked(size, looks, cuts)
-
-
-def series_with_slope(m: Values, coefficients: Sequence[Values], s: Values) -> tuple[Values, Values]:
-    """m + c_1 s + c_2 s^2 + ... and its derivative c_1 + 2 c_2 s + ..., for s of shape (..., 1)."""
-    value: Any = coefficients[-1]
-    slope: Any = value
-    for c in (*coefficients[-2::-1], m):
-        value = c + value * s
-        if c is not m:
-            slope = value + slope * s
-    return value, slope
+    size: Any = xp.minimum(h, left)
+    for _ in range(FITS if local.clock else 0):  # psi is not asked beyond the end
+        passed: Any = local.time(direction * size) * direction
+        size = xp.where(passed > left, size * left / passed, size)
+    zero: Any = 0.0 * size
+    residual, wanted = look(size > 0, size, zero)
+    _, cut, _, residual, looks, cuts = _repeated(again, [wanted, size, zero, residual, zero + 1, zero])
+    # psi that is not finite within the step is the reason of a size that is too small
+    cut = xp.where(xp.isnan(residual), np.nan, cut)
+    return Checked(xp.where(cuts > 0, cut, h), looks, cuts)
 
 
 def _repeated(body: Callable[..., list[Any]], state: list[Any]) -> Sequence[Any]:

@@ -11,7 +11,7 @@ from liehom.base.errors import ConvergenceError
 from liehom.base.typing import Array, BooleanArray, Real, Values
 from liehom.flow.action.field import GeneratorField
 from liehom.flow.action.space import Action
-from liehom.flow.run.check import checked
+from liehom.flow.run.check import checked, is_unbounded
 from liehom.flow.series.arrays import namespace
 from liehom.flow.steps.expansion import flow_series, step_series
 from liehom.flow.steps.step import (
@@ -174,10 +174,10 @@ def tried_size(
     looks, cuts, moves = 0.0, 0.0, limits.moves
     embedded = local.estimate_order is not None
     if embedded and limits.gap is not None:
-        if psi.field.time_dependent:
-            bound = xp.minimum(bound, limits.gap / local.widest_gap)
-        else:
+        if is_unbounded(limits.gap):
             moves = min(moves, MAX_PAIR_MOVE)
+        else:
+            bound = xp.minimum(bound, limits.gap / local.widest_gap)
     if moves < np.inf:
         bound = xp.minimum(bound, moves * time_scale(psi.field, m, t))
     h: Any = bound
@@ -228,8 +228,7 @@ def time_scale(field: GeneratorField, m: Values, t: Values) -> Array:
 def known_trajectory(psi: Generator, local: LocalStep, m: Values, t: Values, order: int) -> None:
     """Expand the trajectory to `ERROR_TERMS` orders above the order of a step that has not done so."""
     if not local.trajectory:
-        flow = flow_series(psi.field, m, order + ERROR_TERMS, t)
-        local.trajectory = [flow.point(k) for k in range(1, order + ERROR_TERMS + 1)]
+        flow_series(psi.field, m, order + ERROR_TERMS, t).note(local, order + ERROR_TERMS)
 
 
 def known_size(action: Action, local: LocalStep, m: Values, order: int, limits: StepLimits) -> Values:

@@ -61,7 +61,7 @@ class Options:
     progress: bool | Callable[[float], object] = False
     checkpoint: Path | None = None  # a file that can be written
     min_step: float = 0.0
-    looks: int = LOOKS
+    looks: int | None = None
 
     @property
     def least_step(self) -> float:
@@ -77,9 +77,10 @@ class Options:
         """How steps of adaptive sizes are checked, a clause; empty for fixed sizes."""
         if self.dt is not None:
             return ""
-        if not self.looks:
+        if self.looks == 0:
             return "not checked (looks=0)"
-        return "psi looked at in each step" + f" and {self.looks} times across the span" * time_dependent
+        looks = LOOKS if self.looks is None and time_dependent else self.looks
+        return "psi looked at in each step" + ("" if looks is None else f" and {looks} times across the span")
 
     def fixed_text(self) -> str:
         """String of the scalar options that must not change when a run is continued."""

@@ -621,7 +621,7 @@ class Corrected(Step):
         )
         raised = CorrectedStep(local, correct(recursion, base.order, self._order), self)
         if error_terms:
-            raised.trajectory = [flow.point(k) for k in range(1, self._order + error_terms + 1)]
+            flow.note(raised, self._order + error_terms)
         return raised
 
     def __repr__(self) -> str:
@@ -656,7 +656,7 @@ class CorrectedStep(LocalStep):
         clock = tuple((k, zero if c is None else c) for k, c in enumerate(correction.clock) if k > 1)
         super().__init__(base.action, base.m, clock=clock)
         self.base, self.correction = base, correction
-        self.defects = correction.defects
+        self.defects, self.quick = correction.defects, base.quick
         self._one_exponential, self._orders = step.one_exponential, (step.base_order, step.order)
 
     @property

@@ -66,6 +66,12 @@ class Flow:
         """Coefficient psi_k of the generator along the flow, shape (..., dim g)."""
         return self.generator.coefficient(k)
 
+    def note(self, local: LocalStep, order: int) -> None:
+        """Tell a step the coefficients up to an order, with which its points are compared with psi."""
+        local.trajectory = [self.point(k) for k in range(1, order + 1)]
+        if local.quick:
+            local.velocity = [self.psi(k) for k in range(order)]
+
 
 def flow_series(field: GeneratorField, m: ArrayLike, order: int, t: Real = 0.0) -> Flow:
     """`Flow`: the expansion of the flow of m' = rho(psi(m, t)) m from (m, t) to a given order.

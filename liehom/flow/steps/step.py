@@ -126,6 +126,10 @@ class LocalStep:
         (k, |[t^k] (flow - step)|), for the k for which it has been computed.
     trajectory : sequence of arrays of shape (..., N)
         The Taylor coefficients m_1, m_2, ... of the trajectory, as many as have been computed.
+    velocity : sequence of arrays of shape (..., dim g)
+        The Taylor coefficients psi_0, psi_1, ... of the generator along it, if `quick`.
+    quick : bool
+        Whether `point` needs neither equations nor values of psi, so that points within the step are quickly computed.
     estimate_order : int or None
         k if `estimate` is O(h^k); None if there is no estimate.
     widest_gap : float
@@ -149,6 +153,8 @@ class LocalStep:
 
     defects: Defects | None = None
     trajectory: Sequence[Values] = ()
+    velocity: Sequence[Values] = ()
+    quick: bool = False
     estimate_order: int | None = None
     widest_gap: float = 1.0
     clock: tuple[tuple[int, Values], ...] = ()
@@ -189,13 +195,12 @@ class LocalStep:
         known = dict(self.clock)
         return polynomial([None, 1, *(known.get(k) for k in range(2, max(known) + 1))], h)
 
-    def series(self, h: Values) -> Values:
-        """m + m_1 h + m_2 h^2 + ... by the known coefficients of the trajectory, for h (..., 1); shape (..., N)."""
-        return self.m + polynomial([None, *self.trajectory], h)
-
-    def landed(self, point: Values) -> Values:
-        """The point of the orbit next to a point (..., N) of the series, if it is quickly computed, else the point."""
-        return point
+    def look(self, h: Values, time: Values) -> tuple[Values, Values]:
+        """A point within the step, at the size h (..., 1) and the time that passes, and its velocity by the series."""
+        if self.velocity:
+            point = self.point(h)
+            return point, self.action.infinitesimal(polynomial(self.velocity, time), point)
+        return series_with_slope(self.m, self.trajectory, time)
 
     def size(self, limits: StepLimits) -> Values | None:
         """Step size (...,) that is known before the step is made, at most `limits.largest`; None if it is not known.
@@ -243,6 +248,16 @@ def polynomial(coefficients: Sequence[Term], h: Values) -> Term:
         if x is not None:
             total = x if total is None else total + x
     return total
+
+
+def series_with_slope(m: Values, coefficients: Sequence[Values], s: Values) -> tuple[Values, Values]:
+    """m + c_1 s + c_2 s^2 + ... and its derivative c_1 + 2 c_2 s + ..., for s of shape (..., 1)."""
+    value: Any = coefficients[-1]
+    slope: Any = value
+    for c in coefficients[-2::-1]:
+        value = c + value * s
+        slope = value + slope * s
+    return m + value * s, slope
 
 
 def apply_factors(action: Action, factors: Factors, m: Values) -> Values:

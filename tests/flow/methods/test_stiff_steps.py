@@ -110,7 +110,7 @@ def test_the_number_of_steps_does_not_grow_with_the_rate(step: lh.Step) -> None:
         assert np.abs(sol.y[:, -1] - end).max() < 30 * limit
         np.testing.assert_allclose(np.linalg.norm(sol.y, axis=0), 1, rtol=0, atol=1e-12)
     assert counts[1] < 2.5 * counts[0]
-    assert explicit_steps() > 100 * counts[1] or step.order == 2
+    assert explicit_steps() > 40 * counts[1] or step.order == 2  # 128 looks across the span are 65 to 129 steps
 
 
 def test_an_ensemble_calls_psi_hardly_more_often_than_its_trajectories() -> None:

@@ -50,7 +50,7 @@ def test_observed_order(manifold: str, n: int) -> None:
 
 def without_last(local: TaylorSeries) -> None:
     """Drop the coefficient of h^n, in the series of the point and of the generator."""
-    local.coefficients = local.coefficients[:-1]
+    local.trajectory = local.trajectory[:-1]
     if isinstance(local, LandedSeries):
         local._velocity = local._velocity[:-1]
 

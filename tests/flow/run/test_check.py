@@ -113,9 +113,7 @@ def test_engines_take_the_same_steps(step: Any, engine: str) -> None:
 @pytest.mark.parametrize("rtol", [1e-3, 1e-6, 1e-9, 1e-12])
 @pytest.mark.parametrize("name", SMOOTH)
 def test_smooth_fields_take_the_steps_that_they_took(name: str, rtol: float) -> None:
-    runs = [
-        lh.integrate(SMOOTH[name], (0, 10), START, rtol=rtol, atol=1e-3 * rtol, looks=looks) for looks in (0, LOOKS)
-    ]
+    runs = [lh.integrate(SMOOTH[name], (0, 10), START, rtol=rtol, atol=1e-3 * rtol, looks=looks) for looks in (0, None)]
     assert runs[1].n_steps == runs[0].n_steps and runs[1].report.cuts == 0
     assert (runs[1].y == runs[0].y).all()
     at_ends = runs[1].n_steps
