@@ -184,8 +184,8 @@ def tried_size(
     if not embedded:
         known_trajectory(psi, local, m, t, order)
         allowed, speed = limits.norm(m, axes), over_sites(length(local.trajectory[0]), axes)
-        if limits.gap is not None:
-            # terms far below the allowed error are not compared with |X| h, else steps go to 0 where X does
+        if limits.gap is not None and psi.field.time_dependent:
+            # terms far below the allowed error are not compared with |X| h, else steps go to 0 at a time when X does
             speed = xp.maximum(speed, allowed / bound)
         h = known_size(action, local, m, order, StepLimits(allowed, speed, bound, axes))
         if limits.gap is not None:

@@ -114,7 +114,7 @@ def test_interrupted_a_conserving_run_still_aims_at_its_start(tmp_path: Path) ->
 
 def test_interrupted_again_and_again(tmp_path: Path) -> None:
     path = tmp_path / "run.npz"
-    for name, calls in (("fixed", 13), ("pair", 60), ("samples", 13)):
+    for name, calls in (("fixed", 13), ("pair", 120), ("samples", 40)):
         whole, times = run(CASES[name], Psi()), 0
         for _ in range(100):
             try:
