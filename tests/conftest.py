@@ -9,7 +9,7 @@ import pytest
 from hypothesis import settings
 
 from tests import sampling
-from tests.costs import Costs
+from tests.record import Recorder
 
 # before numpy is loaded: workers that share the cores compute many small products, on which more threads only wait
 for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
@@ -18,7 +18,7 @@ for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--slow", action="store_true", help="also run the tests marked slow, and every table whole")
-    parser.addoption("--costs", metavar="FILE", type=Path, help="write what each test module costs")
+    parser.addoption("--record", metavar="FILE", type=Path, help="write what each test costs and calls")
 
 
 def pytest_configure(config: pytest.Config) -> None:
@@ -32,8 +32,8 @@ def pytest_configure(config: pytest.Config) -> None:
         "liehom", deadline=None, derandomize=True, print_blob=True, max_examples=sampling.examples(100)
     )
     settings.load_profile("liehom")
-    if config.getoption("--costs") is not None:
-        config.pluginmanager.register(Costs(config.getoption("--costs")))
+    if config.getoption("--record") is not None:
+        config.pluginmanager.register(Recorder(config.getoption("--record")))
 
 
 def runs_whole(config: pytest.Config) -> bool:
