@@ -127,6 +127,7 @@ def report(record: Record, rows: int = 20) -> str:
         seconds[test.split("::")[0]] += cost
     lines = [f"{len(record)} tests, {sum(seconds.values()):.0f} s of CPU time besides collection; the dearest modules:"]
     lines += [f"{seconds[module]:8.1f} s {module}" for module in sorted(seconds, key=lambda m: -seconds[m])[:rows]]
+    lines += [f"more than a minute: {test}" for test, (cost, _) in sorted(record.items()) if cost > 60]
     without = uncalled(record)
     return "\n".join([*lines, f"{len(without)} functions that no test called in its own process:", *without])
 
