@@ -317,8 +317,6 @@ def _adjoint_on_image(pair: CheckedPair, rho: ExactMatrix) -> ExactMatrix:
     d, isotropy = pair.codimension, pair.isotropy
     basis, places = isotropy.echelon()
     r = isotropy.rank()
-    if r == 0:
-        return pair.field.zeros(0, 0)
     is_basis = basis.nrows == r and basis.select(columns=places) == pair.field.identity(r)
     is_basis = is_basis and isotropy == isotropy.select(columns=places) @ basis
     _require(is_basis, "image", "no basis of rho(h) was found")

@@ -8,11 +8,12 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
+import numpy as np
 import pytest
 
 from liehom.base.errors import CertificateError, CertificateFormatError
 from liehom.exact.fullness.certificate import Certificate
-from liehom.exact.fullness.checker import verify_modular
+from liehom.exact.fullness.checker import verify, verify_modular
 from liehom.exact.fullness.checker.verify import verify_certificate
 from liehom.exact.fullness.checker.verify_pair import check_pair
 from liehom.exact.scalars.floating import RR
@@ -454,6 +455,18 @@ def test_each_check_of_a_full_certificate_fails_by_name(fields: dict[str, Any], 
     refused(SPHERE, changed(SPHERE_FULL, **fields), check)
 
 
+def test_forms_are_definite_if_their_eigenvalues_are_positive() -> None:
+    rng, answers = random.Random(4), []
+    for n in (1, 2, 3, 4, 5) * 40:
+        rows = [[rng.randint(-2, 2) for _ in range(n)] for _ in range(n)]
+        form = QQ.matrix([[rows[i][j] + rows[j][i] + 6 * (i == j) for j in range(n)] for i in range(n)])
+        eigenvalues = np.linalg.eigvalsh(form.to_numpy())
+        if abs(eigenvalues[0]) > 1e-9:
+            answers.append(eigenvalues[0] > 0)
+            assert verify._is_positive_definite(form) is bool(answers[-1])
+    assert 50 < sum(answers) < len(answers) - 50
+
+
 def test_full_is_for_dimension_two_and_more() -> None:
     """R/0 at d = 1 would pass all other checks; the argument needs a connected sphere."""
     fields = {"form": [["1"]], "elements": [], "eta": ["1"]}
@@ -464,6 +477,7 @@ def test_full_is_for_dimension_two_and_more() -> None:
     ({"minpoly": ["4", "0", "-4", "0", "1"]}, "minpoly"),  # (t^2 - 2)^2
     ({"minpoly": ["2", "0", "1"]}, "interval"),  # no real root
     ({"interval": ["2", "1"]}, "interval"),
+    ({"minpoly": ["0", "-2", "1"], "interval": ["0", "1"]}, "interval"),  # a root at the end
     ({"interval": ["-2", "2"]}, "interval"),  # two roots
     ({"interval": ["2", "3"]}, "interval"), ({"minpoly": ["-3", "0", "1"]}, "phi-bracket"),
     ({"minpoly": ["0", "1"], "interval": ["0", "0"]}, "length"), ({"eta": ["1", "1"]}, "length"),

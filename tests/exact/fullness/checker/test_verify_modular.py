@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import liehom as lh
-from liehom.base.errors import CertificateError
+from liehom.base.errors import CertificateError, LimitError
 from liehom.exact.fullness.checker import verify_modular, verify_pair
 from liehom.exact.fullness.checker.verify_modular import IntegralPair
 from liehom.exact.fullness.checker.verify_pair import check_pair
@@ -82,8 +82,9 @@ def test_every_prime_is_a_prime_with_a_root_and_small_enough_for_floats(field: A
 
 def test_few_primes_are_skipped() -> None:
     """Over QQ no prime is left out; over a number field those without a root are."""
-    limit = isqrt((1 << 53) // 64)
-    assert first_primes(QQ, 30, 10) == [p for p in range(limit, limit - 1000, -1) if is_prime(p)][:30]
+    for n, limit in ((10, 11863283), (70, 11343468), (75, 10958831)):
+        assert limit == isqrt((1 << 53) // max(n, 64))
+        assert first_primes(QQ, 30, n) == [p for p in range(limit, limit - 1000, -1) if is_prime(p)][:30]
     roots = [p for p in range(1 << 15, (1 << 15) + 2000) if is_prime(p) and any((x * x - 2) % p == 0 for x in range(p))]
     assert first_primes(ROOT2, 30, 10) == roots[:30]
 
@@ -314,6 +315,12 @@ def test_a_pair_for_which_the_primes_do_not_suffice_is_not_accepted(monkeypatch:
     monkeypatch.setattr(verify_modular, "_primes", lambda *_: iter(primes))
     assert failed(rotations(1)) is None
     assert failed(rotations(10**20)) == "pair"
+
+
+def test_a_long_proof_ends_with_the_time_that_is_allowed() -> None:
+    data = integral(rotations(1))
+    with lh.limits(seconds=0), pytest.raises(LimitError):
+        verify_modular.check_representation(data)
 
 
 # -- dense and sparse --------------------------------------------------------------------------------------
