@@ -73,7 +73,7 @@ def squarefree_parts(f: Coefficients) -> list[tuple[Coefficients, int]]:
     rest, slope = divided(f, common)[0], divided(derivative(f), common)[0]
     parts, multiplicity = [], 1
     while len(rest) > 1:
-        # with h_m = g_m g_(m+1) ...: rest = h_m, slope = sum over i >= m of (i - m + 1) g_i' h_m / g_i, of degree deg h_m - 1
+        # rest is the product of the g_i with i >= m, slope the sum of (i - m + 1) g_i' rest/g_i: as long as rest'
         other = trimmed([a - b for a, b in zip(slope, derivative(rest), strict=True)])
         part = gcd(rest, other)
         if len(part) > 1:
