@@ -139,12 +139,17 @@ def with_inverse(patch: Patch) -> Any:
     return verify_certificate(make(3, {}, [[0, 0, 1]]), Certificate("commutant", fields))
 
 
-def with_wrong_image(patch: Patch) -> Any:
-    """The echelon form of rho(h), one line of matrices, is said to be twice itself."""
-    kind = type(QQ.identity(1))
-    echelon = kind.echelon
-    patch.setattr(kind, "echelon", lambda m: (lambda e: (e[0].scale(2), e[1]) if m.shape == (1, 9) else e)(echelon(m)))
-    return verify_certificate(WEIGHTS, Certificate("dominance", {"element": unit(4, 0), "cut": "0", "eps": "1/4"}))
+def with_image(*rows: list[int]) -> Callable[[Patch], Any]:
+    """The basis of rho(h), one line of matrices, is said to be these rows."""
+
+    def offer(patch: Patch) -> Any:
+        kind = type(QQ.identity(1))
+        echelon, basis = kind.echelon, QQ.matrix([[*row, *[0] * (9 - len(row))] for row in rows])
+        said = basis, list(range(len(rows)))
+        patch.setattr(kind, "echelon", lambda m: said if m.shape == (1, 9) else echelon(m))
+        return verify_certificate(WEIGHTS, Certificate("dominance", {"element": unit(4, 0), "cut": "0", "eps": "1/4"}))
+
+    return offer
 
 
 def with_open_image(_: Patch) -> Any:
@@ -260,7 +265,8 @@ CERTIFICATES: dict[str, Callable[[Patch], Any]] = {
     "dominance: no eigenvalue above the cut": offered(SPHERE, "dominance", element=["0"] * 3, cut="5", eps="1"),
     "dominance: an eigenvalue in the gap": offered(LINEAR, "dominance", element=unit(6, 0), cut="1/4", eps="2"),
     "dominance: W = V": offered(SPHERE, "dominance", element=["0"] * 3, cut="-1", eps="1/2"),
-    "dominance: a wrong basis of rho(h)": with_wrong_image,
+    "dominance: a wrong basis of rho(h)": with_image([1]),
+    "dominance: a basis of rho(h) with a row more": with_image([1, 0, 0, 0, -1, 0, 0, 0, -1], [0]),
     "dominance: rho(h) is not closed": with_open_image,
     "dominance: eigenvalues on the line": offered(FLAT, "dominance", element=["0", "0"], cut="0", eps="1"),
     "pair: over floats": lambda _: verify_certificate(make(3, {}, [[0, 0, 1]], RR), TRIVIAL),
@@ -383,6 +389,7 @@ KEYS: dict[str, Callable[[Patch], Any]] = {
 }
 FORGERIES = CERTIFICATES | KEYS
 NEEDED = {
+    "dominance: a basis of rho(h) with a row more",
     "commutant: rows that are no complement", "commutant: a point", "dominance: a point",
     "dominance: eigenvalues on the line", "pair: over floats",
     "key: of a pair over floats", "key: an ideal over another field", "key: S moves points in few directions",

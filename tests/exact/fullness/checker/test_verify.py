@@ -490,6 +490,11 @@ def test_each_check_of_a_witness_fails_by_name(fields: dict[str, Any], check: st
     refused(SPLIT, changed(SPLIT_NOT, **fields), check)
 
 
+def test_a_minpoly_need_not_be_monic() -> None:
+    assert verify_certificate(SPLIT, changed(SPLIT_NOT, minpoly=["-4", "0", "2"]))
+    refused(SPLIT, changed(SPLIT_NOT, minpoly=["-2", "0", "2"], interval=["0", "2"]), "phi-bracket")
+
+
 def test_interval_of_degree_one() -> None:
     for interval in (["0", "0"], ["-1", "1"], ["0", "5"], ["-1", "0"]):
         assert verify_certificate(HYPERBOLA, changed(HYPERBOLA_NOT, interval=interval))
@@ -564,6 +569,10 @@ def test_a_complex_structure_splits_nothing() -> None:
 ])  # fmt: skip
 def test_each_check_of_a_dominance_certificate_fails_by_name(fields: dict[str, Any], check: str) -> None:
     refused(TENSOR, changed(TENSOR_NOT, **fields), check)
+
+
+def test_dominance_is_checked_in_dimension_one() -> None:
+    refused(make(1, {}, []), Certificate("dominance", {"element": ["0"], "cut": "-1", "eps": "1/2"}), "dominance")
 
 
 def test_another_cut_is_as_good() -> None:
