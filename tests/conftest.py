@@ -28,6 +28,11 @@ def pytest_configure(config: pytest.Config) -> None:
     # a run in the background has an ignored SIGINT, which the processes that tests interrupt would inherit
     if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
         signal.signal(signal.SIGINT, signal.default_int_handler)
+    if (cache := getattr(config, "cache", None)) is not None:
+        # a folder for each worker, since JAX does not write whole files
+        folder = cache.mkdir(f"jax-{os.environ.get('PYTEST_XDIST_WORKER', 'main')}")
+        os.environ.setdefault("JAX_COMPILATION_CACHE_DIR", str(folder))
+        os.environ.setdefault("JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS", "0.1")
     sampling.whole = config.getoption("--slow") or config.getoption("benchmark_enable", default=False)
     sampling.shard = config.getoption("--shard")
     # deadline: the suite shares two cores, so a slow example says nothing about the code;

@@ -93,6 +93,13 @@ def test_only_pictures_over_time_have_scales_of_their_own() -> None:
     assert stage(sol, (3, 1), over_time=True, ax=small())[0].scene.axes.get_aspect() == "auto"
 
 
+def test_the_time_of_an_animation_is_that_of_the_run() -> None:
+    sol = lh.integrate(SPIN, (2, 3.5), [1.0, 0.0], dt=0.5)
+    for options in ({}, {"over_time": True}):
+        actors = stage(sol, ax=small(), **options)
+        assert [actor.span for actor in actors] == [1.5] * len(actors)
+
+
 def test_points_without_a_surface_fill_the_window() -> None:
     sol = lh.integrate(lh.GeneratorField(lh.defining(lh.so(4)), np.arange(1.0, 7)), (0, 3), np.eye(4)[0], dt=0.1)
     for axes in (small(), new_figure(2, 2).add_subplot(projection="3d")):

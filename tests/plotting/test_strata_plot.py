@@ -69,6 +69,24 @@ def test_eigenvalues_are_marked_at_their_barycentric_coordinates():
         plot_eigenvalues(points=[(1, -1, 0)])
 
 
+def test_medians_of_the_triangle_of_eigenvalues_end_in_the_middle_of_its_sides():
+    ax = plot_eigenvalues()
+    corners = ax.patches[0].get_xy()[:3]
+    outline = np.array(ax.lines[0].get_data()).T
+    assert np.allclose(outline, [*corners, corners[0]])
+    assert np.allclose(np.linalg.norm(np.diff(outline, axis=0), axis=1), np.sqrt(3))
+    for k, line in enumerate(ax.lines[1:4]):
+        ends = np.array(line.get_data()).T
+        assert np.allclose(ends, [corners[k], (corners[k - 1] + corners[k - 2]) / 2])
+    assert np.allclose(ax.lines[4].get_data(), 0)
+    window = np.array([ax.get_xlim(), ax.get_ylim()])
+    assert sorted(text.get_text() for text in ax.texts) == ["(0, 0, 1)", "(0, 1, 0)", "(1, 0, 0)"]
+    for text, corner in zip(ax.texts, corners, strict=True):
+        place = np.array(text.get_position())
+        assert 0.1 < np.linalg.norm(place - corner) < 0.2 and place @ corner > 1.1
+        assert (window[:, 0] < place).all() and (place < window[:, 1]).all()
+
+
 def test_the_legend_of_eigenvalues_has_the_colors_of_what_is_drawn():
     ax = plot_eigenvalues()
     region, medians, center = ax.patches[0], ax.lines[1:4], ax.lines[4]

@@ -85,6 +85,15 @@ def test_axes_in_the_plane_show_a_box_about_its_middle(zoom: float) -> None:
     assert scene.axes.get_aspect() == 1.0
 
 
+def test_axes_in_space_show_a_box_in_equal_scales() -> None:
+    axes = lh.plotting.canvas.new_figure(3, 3).add_subplot(projection="3d")
+    half, middle = np.array([1.0, 2.0, 0.5]), np.array([0.3, -1.0, 4.0])
+    Scene(axes).limit(half, middle)
+    window = np.array([axes.get_xlim(), axes.get_ylim(), axes.get_zlim()])
+    assert np.allclose(window, np.stack([middle - half, middle + half], axis=1))
+    assert np.allclose(axes._box_aspect / axes._box_aspect[0], half / half[0])
+
+
 @pytest.mark.parametrize("form", [np.diag([1.0, 0.0, 0.0]), -np.eye(3), np.zeros((3, 3))])
 def test_other_level_sets_raise(form: np.ndarray) -> None:
     with pytest.raises(lh.InputError, match="ellipsoid"):

@@ -58,6 +58,11 @@ def test_completed_matrices_generate_an_algebra_of_the_same_dimension() -> None:
         lh.rationalize(completed)
 
 
+def test_zeros_are_fractions() -> None:
+    exact, change = lh.rationalize(lh.abelian(2).over(lh.RR))
+    assert exact == lh.abelian(2) and change == 0.0
+
+
 def test_the_largest_change_is_relative_to_the_largest_entry() -> None:
     g = lh.LieAlgebra({(0, 1): {0: 1 / 3 + 2e-7, 1: 4.0}}, field=lh.RR)
     assert lh.rationalize(g, max_denominator=3).largest_change == pytest.approx(5e-8, rel=1e-6)
