@@ -50,12 +50,17 @@ def test_a_module_that_is_loaded_for_a_record_tells_what_is_called(
     assert space["plain"].__code__.co_firstlineno == 5  # type: ignore[attr-defined]
 
 
-def test_a_record_is_written_and_read() -> None:
-    tests = {"a::b": (0.5, ["liehom/a.py:f", "liehom/a.py:g"]), "a::c": (0.25, []), "d::e": (2.0, ["liehom/a.py:g"])}
+def test_a_record_is_written_and_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "liehom").mkdir()
+    (tmp_path / "liehom" / "a.py").write_text(SOURCE)
+    monkeypatch.setattr(record, "ROOT", tmp_path)
+    tests = {"a::b": (0.5, ["liehom/a.py:plain"]), "a::c": (0.25, []), "d::e": (62.0, ["liehom/a.py:plain"])}
     assert record.loaded(record.dumped(tests)) == tests
     text = record.report(tests, rows=1).splitlines()
-    assert text[0].startswith("3 tests, 3 s")
-    assert text[1].split() == ["2.0", "s", "d"]
-    every = record.uncalled(tests)
-    assert "liehom/base/budget.py:in_time" in every
-    assert "liehom/base/budget.py:in_time" not in record.uncalled({"a::b": (0.0, ["liehom/base/budget.py:in_time"])})
+    assert text[0].startswith("3 tests, 63 s")
+    assert text[1].split() == ["62.0", "s", "d"]
+    assert text[2:] == [
+        "more than a minute: d::e",
+        "1 functions that no test called in its own process:",
+        "liehom/a.py:Holder.value",
+    ]

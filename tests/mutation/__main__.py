@@ -190,6 +190,9 @@ def main() -> int:
     if not given.record.exists():
         files = sorted({str(mirrored(module)) for module in lines})
         subprocess.run([sys.executable, "-m", "pytest", *quiet, "--record", str(given.record), *files], cwd=ROOT)
+    later = [p for p in (ROOT / "tests").rglob("test_*.py") if p.stat().st_mtime > given.record.stat().st_mtime]
+    if later:
+        print(f"{len(later)} test modules are newer than {given.record}: their new tests do not count")
     record = loaded(given.record.read_text(encoding="utf-8"))
     chosen = pool[: given.count]
     mutated = {mutant.function for mutant in chosen}
