@@ -6,6 +6,7 @@ import pytest
 
 import liehom as lh
 from liehom.base.errors import CertificateError
+from liehom.exact.fullness import verify_classification
 from liehom.exact.fullness.classification_rows import Key
 from liehom.exact.fullness.verify_classification import verify_key
 from liehom.exact.scalars.number_fields import NumberField
@@ -35,3 +36,14 @@ def test_an_ideal_is_a_subspace_of_the_algebra(field: Any, ambient: int) -> None
         assert verify_key(pair, key, ideal) is None
     else:
         assert refused(pair, key, ideal) == "ideal"
+
+
+def test_random_elements_that_show_nothing_change_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The ideal of so(4)/u(2) is the largest one in h by the adjoints of all basis elements as well."""
+    pair = lh.pair("so(4)/u(2)")
+    result = lh.classify(pair)
+    row = verify_classification._random_row
+    none = lambda field, n, rng: field.zeros(1, n) if n == 6 else row(field, n, rng)  # noqa: E731
+    monkeypatch.setattr(verify_classification, "_random_row", none)
+    assert result.verify(pair)
+    assert refused(pair, result.key, Subspace(QQ, [], 6)) == "ideal"
