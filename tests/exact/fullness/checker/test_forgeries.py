@@ -189,11 +189,15 @@ def modular(dense: bool, pair: Any, certificate: Certificate) -> Callable[[Patch
     return offer
 
 
-def with_an_unchecked_interval(patch: Patch) -> Any:
-    """A field whose interval has two roots, where the constructor does not see it."""
-    field = unchecked_field([-2, 0, 1], (-2, 2))
-    patch.setattr(verify_pair.NumberField, "__init__", lambda self, *_: None)
-    return verify_pair.check_pair(make(1, {}, [], field))
+def with_an_unchecked_interval(minpoly: list[int], interval: tuple[int, int]) -> Callable[[Patch], Any]:
+    """A field with an interval that the constructor does not see."""
+
+    def offer(patch: Patch) -> Any:
+        field = unchecked_field(minpoly, interval)
+        patch.setattr(verify_pair.NumberField, "__init__", lambda self, *_: None)
+        return verify_pair.check_pair(make(1, {}, [], field))
+
+    return offer
 
 
 ROTATIONS = make(
@@ -289,7 +293,8 @@ CERTIFICATES: dict[str, Callable[[Patch], Any]] = {
         make(1, {}, [], ROOT2), Certificate("trivial", {}, MINUS_ROOT2)
     ),
     "field: a reducible polynomial": lambda _: verify_pair._check_field(unchecked_field([-1, 0, 1], (0, 2))),
-    "field: an interval with two roots": with_an_unchecked_interval,
+    "field: an interval with two roots": with_an_unchecked_interval([-2, 0, 1], (-2, 2)),
+    "field: a root at the lower end": with_an_unchecked_interval([0, -1, 1], (0, 2)),
 }  # fmt: skip
 
 
@@ -424,3 +429,15 @@ def test_only_one_refusal_stands_between_a_forgery_and_its_verdict(name: str) ->
 def test_every_refusal_has_a_forgery() -> None:
     reached = {site_of(refusal(name)) for name in FORGERIES}
     assert reached == set(sites()), sorted(set(sites()) - reached)
+
+
+@pytest.mark.parametrize("offer", [
+    with_an_unchecked_interval([-2, 1], (1, 2)),  # a root at the upper end
+    lambda _: verify_certificate(
+        make(1, {}, [], ROOT2), Certificate("trivial", {}, unchecked_field([-2, 0, 1], (-2, 2)))
+    ),
+], ids=["pair", "certificate"])  # fmt: skip
+def test_fields_of_both_sides_are_checked(offer: Callable[[Patch], Any]) -> None:
+    with pytest.MonkeyPatch.context() as patch, pytest.raises(lh.CertificateError) as caught:
+        offer(patch)
+    assert caught.value.check == "field"

@@ -323,7 +323,7 @@ def test_table_without_homomorphism_fails_the_check_homomorphism() -> None:
 
 
 def test_constants_out_of_range() -> None:
-    for entry in ((1, 0, 2), (0, 0, 1), (0, 3, 1), (0, 1, 3), (-1, 0, 1)):
+    for entry in ((1, 0, 2), (0, 0, 1), (0, 3, 1), (0, 1, 3), (-1, 0, 1), (0, 1, -1)):
         refused(make(3, {entry: 1}, [[0, 0, 1]]), Certificate("trivial", {}), "pair")
     twice = Algebra(QQ, 3, ((0, 1, 2, QQ.one), (0, 1, 2, QQ.one)))
     refused(Pair(twice, SPHERE.subalgebra), SPHERE_FULL, "pair")
@@ -424,7 +424,7 @@ def test_the_embedding_decides() -> None:
     """With a = -sqrt(2) the circle is a hyperbola."""
     pair = affine([[[0, "-a"], [1, 0]]], MINUS_ROOT2)
     refused(pair, Certificate("full", ROOT_CIRCLE_FULL.to_fields(), MINUS_ROOT2), "form-definite")
-    refused(pair, ROOT_CIRCLE_FULL, "field")
+    assert "(-2, 0, 1) on (1, 2), the pair over QQ(a)" in str(refused(pair, ROOT_CIRCLE_FULL, "field"))
 
 
 def test_interval_with_three_roots_fails_the_check_field() -> None:
