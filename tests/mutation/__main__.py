@@ -134,7 +134,7 @@ def _forked(run: object, limit: float) -> tuple[int, int]:
     os.close(writer)
     with os.fdopen(reader) as pipe:
         signal.signal(signal.SIGALRM, lambda *_: os.kill(child, signal.SIGXCPU))  # a child that waits for ever
-        signal.setitimer(signal.ITIMER_REAL, 10 * limit)
+        signal.setitimer(signal.ITIMER_REAL, 3 * limit)
         _, status = os.waitpid(child, 0)
         signal.setitimer(signal.ITIMER_REAL, 0)
         return os.waitstatus_to_exitcode(status), int(pipe.read() or 0)

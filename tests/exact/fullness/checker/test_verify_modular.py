@@ -231,6 +231,12 @@ def test_the_bound_is_that_of_all_conjugates(field: Any) -> None:
     assert bound_of(data) >= 3 * conjugates(field, data.isotropy.entries()) ** 2 * 0.999
 
 
+def test_the_bound_counts_a_root_that_is_larger_than_all_coefficients() -> None:
+    golden = NumberField("g", [-1, -1, 1], (1, 2))
+    data = integral(make(2, {(0, 1, 1): golden.generator * 1000}, [[1, 0]], golden))
+    assert bound_of(data) >= 3 * 1618**2
+
+
 # -- as many primes as needed ------------------------------------------------------------------------------
 def primes_used(pair: Pair, monkeypatch: pytest.MonkeyPatch) -> tuple[list[int], int]:
     """The primes modulo which the pair is checked, and the bound that their product must exceed."""
