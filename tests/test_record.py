@@ -24,6 +24,10 @@ class Holder:
             return 2
 
         return inner()
+
+    def promised(self) -> int:
+        """Of a protocol."""
+        ...
 '''
 
 
