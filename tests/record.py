@@ -31,7 +31,7 @@ def cpu_seconds() -> float:
 
 
 def functions(tree: ast.AST, prefix: str) -> Iterator[tuple[str, ast.FunctionDef]]:
-    """All functions and methods of a module that do something, by name; one inside a function counts as the outer one."""
+    """Functions and methods of a module that do something, by name; one inside a function counts as the outer one."""
     for node in ast.iter_child_nodes(tree):
         if isinstance(node, ast.FunctionDef):
             # a docstring or an ellipsis alone says what others are to do
