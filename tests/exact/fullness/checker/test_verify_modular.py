@@ -89,6 +89,14 @@ def test_few_primes_are_skipped() -> None:
     assert first_primes(ROOT2, 30, 10) == roots[:30]
 
 
+@pytest.mark.parametrize(
+    ("modulus", "p", "root"),
+    [((-2, 0, 0, 1), 5, 3), ((-2, 0, 0, 1), 7, None), ((-1, 0, 1), 7, 1), ((6, -5, 1), 101, 2)],
+)
+def test_the_smallest_root_modulo_a_prime(modulus: tuple[int, ...], p: int, root: int | None) -> None:
+    assert verify_modular._root(modulus, p) == root
+
+
 @pytest.mark.parametrize("candidate", [*range(3, 200), 32783, 32783**2, 11863279, 2**23 - 1, 4093 * 4099, 8191**2])
 def test_primality_by_trial_division(candidate: int) -> None:
     assert verify_modular._is_prime(candidate) is (is_prime(candidate) and candidate > 2)
