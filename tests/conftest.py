@@ -9,7 +9,7 @@ import pytest
 from hypothesis import settings
 
 from tests import sampling
-from tests.costs import Costs
+from tests.record import Recorder
 
 # before numpy is loaded: workers that share the cores compute many small products, on which more threads only wait
 for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
@@ -18,22 +18,37 @@ for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--slow", action="store_true", help="also run the tests marked slow, and every table whole")
-    parser.addoption("--costs", metavar="FILE", type=Path, help="write what each test module costs")
+    parser.addoption(
+        "--shard", metavar="K", type=int, choices=range(sampling.SHARDS), help="also run shard K of what is left out"
+    )
+    parser.addoption("--record", metavar="FILE", type=Path, help="write what each test costs and calls")
 
 
 def pytest_configure(config: pytest.Config) -> None:
     # a run in the background has an ignored SIGINT, which the processes that tests interrupt would inherit
     if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
         signal.signal(signal.SIGINT, signal.default_int_handler)
+    if (cache := getattr(config, "cache", None)) is not None:
+        # a folder for each worker, since JAX does not write whole files
+        folder = cache.mkdir(f"jax-{os.environ.get('PYTEST_XDIST_WORKER', 'main')}")
+        os.environ.setdefault("JAX_COMPILATION_CACHE_DIR", str(folder))
+        os.environ.setdefault("JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS", "0.1")
     sampling.whole = config.getoption("--slow") or config.getoption("benchmark_enable", default=False)
+    sampling.shard = config.getoption("--shard")
     # deadline: the suite shares two cores, so a slow example says nothing about the code;
-    # derandomize: a run is the same run everywhere, and a failure found once is found again
+    # derandomize: a run is the same run everywhere, and a failure found once is found again, except with a shard,
+    # which is there to find what other runs do not, and takes --hypothesis-seed
     settings.register_profile(
-        "liehom", deadline=None, derandomize=True, print_blob=True, max_examples=sampling.examples(100)
+        "liehom",
+        deadline=None,
+        derandomize=sampling.shard is None,
+        database=None,
+        print_blob=True,
+        max_examples=sampling.examples(100),
     )
     settings.load_profile("liehom")
-    if config.getoption("--costs") is not None:
-        config.pluginmanager.register(Costs(config.getoption("--costs")))
+    if config.getoption("--record") is not None:
+        config.pluginmanager.register(Recorder(config.getoption("--record")))
 
 
 def runs_whole(config: pytest.Config) -> bool:
@@ -48,16 +63,16 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> Generator[None]:
     calls = metafunc._calls
     if not calls or runs_whole(metafunc.config):
         return
-    fast = [call for call in calls if all(mark.name != "slow" for mark in call.marks)]
-    chosen = sampling.kept(
-        sampling.module_of(metafunc.definition.path),
-        metafunc.definition.name,
-        [call.id for call in fast],
-        sampling.table(),
-    )
-    if not chosen:  # a test without cases would run without its parameters
+    module, name, tables = sampling.module_of(metafunc.definition.path), metafunc.definition.name, sampling.table()
+    whole_test = metafunc.definition.get_closest_marker("slow") is not None
+    slow = {call.id for call in calls if whole_test or any(mark.name == "slow" for mark in call.marks)}
+    ids = [call.id for call in calls if call.id not in slow]
+    chosen = {ids[i] for i in sampling.kept(module, name, ids, tables)}
+    chosen |= {case for case in slow if sampling.in_shard(module, f"{name}[{case}]", tables)}
+    left = [call for call in calls if call.id in chosen]
+    if not left:  # a test without cases would run without its parameters
         calls[0].marks.append(pytest.mark.slow.mark)
-    calls[:] = [fast[i] for i in chosen] or calls[:1]
+    calls[:] = left or calls[:1]
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
@@ -67,6 +82,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     if not runs_whole(config):
         tables = sampling.table()
         slow |= {item for item in items if item.name in tables.get(sampling.module_of(item.path), {}).get("slow", ())}
+        slow = {item for item in slow if not sampling.in_shard(sampling.module_of(item.path), item.name, tables)}
     if slow:
         config.hook.pytest_deselected(items=[item for item in items if item in slow])
         items[:] = [item for item in items if item not in slow]

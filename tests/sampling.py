@@ -1,11 +1,15 @@
 """Which cases of an expensive table run by default: an evenly spread sample. With `--slow` every table is whole.
 
 `samples.toml` names the tables: for each test module how many cases of a test run by default, and which single cases
-are so expensive that only `--slow` runs them. The sample is the same in every run: case i comes at the place of the
+are so expensive that the default leaves them out. The sample is the same in every run: case i comes at the place of the
 fractional part of i times the golden ratio, so that any number of cases is spread over all axes of a table.
+
+What the default leaves out is dealt to shards by its name. `--shard K` adds shard K to the default run. Tests of more
+than a minute, `alone` in `samples.toml`, are in no shard.
 """
 
 import tomllib
+import zlib
 from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
@@ -15,13 +19,15 @@ FILE = Path(__file__).with_name("samples.toml")
 ROOT = FILE.parent.parent
 GOLDEN_RATIO = 0.6180339887498949
 EXAMPLES_PER_DEFAULT_EXAMPLE = 4  # hypothesis draws this many times more examples with `--slow`
+SHARDS = 8
 
 whole = False  # set by conftest before any test module is imported
+shard: int | None = None  # so is this
 
 
 @cache
 def table() -> dict[str, dict[str, Any]]:
-    """For each test module, `sample` (test: number of cases by default) and `slow` (cases that only `--slow` runs)."""
+    """For each test module, `sample` (test: number of cases by default), `slow` (cases left out) and `alone`."""
     return tomllib.loads(FILE.read_text(encoding="utf-8"))
 
 
@@ -35,8 +41,16 @@ def spread(count: int, size: int) -> set[int]:
     return set(sorted(range(count), key=lambda i: (i + 1) * GOLDEN_RATIO % 1)[:size])
 
 
+def in_shard(module: str, name: str, tables: dict[str, dict[str, Any]]) -> bool:
+    """Whether a test that the default leaves out runs with this shard; the name may have parameters."""
+    alone = tables.get(module, {}).get("alone", ())
+    if shard is None or name in alone or name.partition("[")[0] in alone:
+        return False
+    return zlib.crc32(f"{module}::{name}".encode()) % SHARDS == shard
+
+
 def kept(module: str, test: str, ids: Sequence[str], tables: dict[str, dict[str, Any]]) -> list[int]:
-    """The indices of the cases of a parametrized test that run by default.
+    """The indices of the cases of a parametrized test that run by default, or with this shard.
 
     Raises
     ------
@@ -50,7 +64,8 @@ def kept(module: str, test: str, ids: Sequence[str], tables: dict[str, dict[str,
         raise ValueError(f"{FILE.name}: {module} has no case {sorted(missing)}")
     left = [i for i, name in enumerate(names) if name not in slow]
     sample = spread(len(left), entry.get("sample", {}).get(test, len(left)))
-    return [i for k, i in enumerate(left) if k in sample]
+    chosen = {i for k, i in enumerate(left) if k in sample}
+    return [i for i, name in enumerate(names) if i in chosen or in_shard(module, name, tables)]
 
 
 def examples(count: int) -> int:

@@ -100,7 +100,7 @@ class LimitError(InputError):
 def _rounded_up(size: float) -> str:
     """The size as a number that is at least as large; short if it has many digits."""
     if not isinstance(size, int):
-        return f"{size:.0f}" if size < 1e15 else f"{size:.0e}"
+        return f"{-(-size // 1):.0f}" if size < 1e15 else f"{1.05 * size:.1e}"
     bits = size.bit_length()
     return str(size) if bits <= 64 else f"10**{int(bits * 0.30103) + 1}"
 

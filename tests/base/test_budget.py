@@ -106,6 +106,21 @@ def test_an_inner_block_does_not_extend_a_deadline() -> None:
         budget.in_time()
 
 
+def test_the_message_names_the_seconds_that_have_passed() -> None:
+    with lh.limits(seconds=0.05), pytest.raises(LimitError, match="seconds") as caught:
+        time.sleep(0.1)
+        budget.in_time()
+    assert 0.1 <= caught.value.found < 60
+    for pattern in (r"taken (\S+) seconds", r"limits\(seconds=(\S+)\)", r"--limit seconds=(\S+)`"):
+        assert float(re.search(pattern, str(caught.value))[1]) >= caught.value.found  # type: ignore[index]
+
+
+@pytest.mark.parametrize("found", [0.05, 0.5, 2.0, 12.4, 9.4e14, 1.04e15, 1.06e15, 9.99e20])
+def test_a_message_proposes_a_limit_that_is_large_enough(found: float) -> None:
+    text = str(LimitError("seconds", found, 0.01, "it takes {}"))
+    assert found <= float(re.search(r"takes (\S+),", text)[1]) <= max(1.0, 1.2 * found)  # type: ignore[index]
+
+
 # -- the context -----------------------------------------------------------------------------------------
 def test_limits_end_with_their_block_and_nest() -> None:
     default = digits_in_force()

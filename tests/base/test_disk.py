@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 import liehom as lh
+from liehom.base import disk
 from liehom.base.disk import checksum, write_atomically
 from liehom.base.errors import FormatError, InputError
 from liehom.base.store import open_store
@@ -171,6 +172,21 @@ def test_checksums_see_names_types_shapes_and_order_of_texts() -> None:
         checksum({"a": a, "c": a}, "x", "y"),
     ]
     assert same == checksum({"a": a.copy()}, "x", "y") and same not in others and len(set(others)) == len(others)
+
+
+def test_the_padding_of_long_doubles_is_not_part_of_a_digest() -> None:
+    values = np.array([1.5, -2.25, 1e-30], dtype=np.longdouble) / 3
+    other = values.copy()
+    raw = other.view(np.uint8).reshape(3, -1)
+    before = raw.copy()
+    size = np.finfo(np.longdouble).nmant // 8 + 3  # bytes of an 80 bit number; doubles have no padding
+    raw[:, size:] ^= 0xFF
+    assert np.array_equal(values, other)
+    assert (raw != before).any() or raw.shape[1] == 8
+    assert disk.digest(values) == disk.digest(other)
+    tail = values.copy()
+    tail[1] = np.nextafter(tail[1], np.longdouble(0))
+    assert disk.digest(values) != disk.digest(tail)
 
 
 def test_an_unwritable_store_is_an_input_error(tmp_path: Path) -> None:

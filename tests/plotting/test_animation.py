@@ -86,6 +86,37 @@ def test_coordinates_over_time_and_chosen_ones() -> None:
     assert np.allclose(np.array(actor.move(1.0)[2].get_data(), dtype=float)[:, 0], sol.y[[3, 1], -1])
 
 
+def test_only_pictures_over_time_have_scales_of_their_own() -> None:
+    sol = lh.integrate(lh.GeneratorField(lh.defining(lh.so(4)), np.arange(1.0, 7)), (0, 1), np.eye(4)[0], dt=0.1)
+    assert stage(sol, ax=small())[0].scene.axes.get_aspect() == "auto"
+    assert stage(sol, (3, 1), ax=small())[0].scene.axes.get_aspect() == 1.0
+    assert stage(sol, (3, 1), over_time=True, ax=small())[0].scene.axes.get_aspect() == "auto"
+
+
+def test_the_time_of_an_animation_is_that_of_the_run() -> None:
+    sol = lh.integrate(SPIN, (2, 3.5), [1.0, 0.0], dt=0.5)
+    for options in ({}, {"over_time": True}):
+        actors = stage(sol, ax=small(), **options)
+        assert [actor.span for actor in actors] == [1.5] * len(actors)
+
+
+def test_points_without_a_surface_fill_the_window() -> None:
+    sol = lh.integrate(lh.GeneratorField(lh.defining(lh.so(4)), np.arange(1.0, 7)), (0, 3), np.eye(4)[0], dt=0.1)
+    for axes in (small(), new_figure(2, 2).add_subplot(projection="3d")):
+        scene = stage(sol, (0, 1, 2), ax=axes)[0].scene
+        points = sol.y[:3]
+        low, high = points.min(axis=1), points.max(axis=1)
+        half, middle = (high - low).max() / 2, (low + high) / 2
+        if scene.solid:
+            window = np.array([axes.get_xlim(), axes.get_ylim(), axes.get_zlim()])
+            assert np.allclose(window.mean(axis=1), middle, atol=0.02)
+            assert np.allclose(np.diff(window), 2.1 * half, rtol=0.02)
+        else:
+            window, seen = np.array([axes.get_xlim(), axes.get_ylim()]), scene.screen @ points
+            assert (window[:, 0] <= seen.min(axis=1)).all() and (seen.max(axis=1) <= window[:, 1]).all()
+            assert np.allclose(window.mean(axis=1), scene.screen @ middle, atol=0.02)
+
+
 @pytest.mark.parametrize(
     ("options", "error", "match"),
     [

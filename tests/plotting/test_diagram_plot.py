@@ -11,7 +11,15 @@ from matplotlib.colors import to_hex
 from matplotlib.text import Text
 
 from liehom.plotting.canvas import COLOURS, new_figure
-from liehom.plotting.diagram_plot import NODE, node_places, plot_bracket_table, plot_dynkin, plot_satake, plot_vogan
+from liehom.plotting.diagram_plot import (
+    NODE,
+    _label_shift,
+    node_places,
+    plot_bracket_table,
+    plot_dynkin,
+    plot_satake,
+    plot_vogan,
+)
 
 KINDS = ["A1", "A5", "B2", "B4", "C4", "D2", "D3", "D5", "E6", "E7", "E8", "F4", "G2", "A2 + G2", "D4 + E6", "0"]
 
@@ -65,6 +73,28 @@ def test_bonds_are_those_of_the_cartan_matrix_and_point_to_shorter_roots(kind):
 def test_nodes_are_apart(kind):
     places = node_places(kind)
     assert (np.linalg.norm(places[:, None] - places, axis=2) + 10 * np.eye(len(places)) > 0.8).all()
+
+
+@pytest.mark.parametrize(("bonds", "shift"), [
+    ([], (0, -1)), ([(1, 0)], (0, -1)), ([(0, -2)], (0, 1)), ([(0, -1), (0, 1)], (1, 0)),
+    ([(0, -1), (0, 1), (3, 0)], (-1, 0)), ([(1, 0), (-1, 0), (0, 1), (0, -1)], (-0.75, -0.75)),
+    ([(0, -1), (0, 1), (1, 0), (-1, 0.5)], (-0.75, -0.75)), ([(0.3, -1)], (0, 1)), ([(0.5, -0.2)], (0, -1)),
+    ([(1, 0), (-1, 0), (0, 1), (0, -1), (-1, -1)], (-0.75, 0.75)), ([(0, -0.3)], (0, 1)),
+    # bonds at 45, 157 and 293 degrees leave no axis free, and the diagonal by 68 degrees
+    ([(0.707, 0.707), (-0.921, 0.391), (0.391, -0.921)], (-0.75, -0.75)),
+])  # fmt: skip
+def test_labels_are_beside_nodes_where_no_bond_is(bonds, shift):
+    found = _label_shift(np.array(bonds, dtype=float).reshape(-1, 2))
+    assert np.allclose(found, 0.4 * np.array(shift))
+
+
+@pytest.mark.parametrize("kind", [k for k in KINDS if k != "0"])
+def test_no_label_lies_on_another_or_on_a_node(kind):
+    ax = plot_dynkin(kind)
+    texts = np.array([text.get_position() for text in ax.texts if text.get_text()])
+    places = np.concatenate([texts, centers(ax)])
+    apart = np.linalg.norm(places[:, None] - places[None], axis=2) + 9 * np.eye(len(places))
+    assert apart.min() > 0.3
 
 
 def test_labels_replace_the_numbers_of_nodes():

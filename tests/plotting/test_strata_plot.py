@@ -7,6 +7,8 @@ import liehom as lh
 
 pytest.importorskip("matplotlib")
 
+from matplotlib.colors import to_hex
+
 from liehom.plotting.canvas import new_figure
 from liehom.plotting.strata_plot import failure_curves, plot_eigenvalues, plot_failure_cone, plot_weyl_chamber
 
@@ -65,6 +67,40 @@ def test_eigenvalues_are_marked_at_their_barycentric_coordinates():
     assert any("isotropy so(3), orbits of dimension 0" in text for text in labels)
     with pytest.raises(lh.InputError, match="positive sum"):
         plot_eigenvalues(points=[(1, -1, 0)])
+
+
+def test_medians_of_the_triangle_of_eigenvalues_end_in_the_middle_of_its_sides():
+    ax = plot_eigenvalues()
+    corners = ax.patches[0].get_xy()[:3]
+    outline = np.array(ax.lines[0].get_data()).T
+    assert np.allclose(outline, [*corners, corners[0]])
+    assert np.allclose(np.linalg.norm(np.diff(outline, axis=0), axis=1), np.sqrt(3))
+    for k, line in enumerate(ax.lines[1:4]):
+        ends = np.array(line.get_data()).T
+        assert np.allclose(ends, [corners[k], (corners[k - 1] + corners[k - 2]) / 2])
+    assert np.allclose(ax.lines[4].get_data(), 0)
+    window = np.array([ax.get_xlim(), ax.get_ylim()])
+    assert sorted(text.get_text() for text in ax.texts) == ["(0, 0, 1)", "(0, 1, 0)", "(1, 0, 0)"]
+    for text, corner in zip(ax.texts, corners, strict=True):
+        place = np.array(text.get_position())
+        assert 0.1 < np.linalg.norm(place - corner) < 0.2 and place @ corner > 1.1
+        assert (window[:, 0] < place).all() and (place < window[:, 1]).all()
+
+
+def test_the_legend_of_eigenvalues_has_the_colors_of_what_is_drawn():
+    ax = plot_eigenvalues()
+    region, medians, center = ax.patches[0], ax.lines[1:4], ax.lines[4]
+    handles = {text.get_text().split(":")[0]: line for text, line in zip(
+        ax.get_legend().get_texts(), ax.get_legend().get_lines(), strict=True)}  # fmt: skip
+    colors = {name: to_hex(line.get_color()) for name, line in handles.items()}
+    assert colors["a > b > c"] == to_hex(region.get_facecolor())
+    assert [colors["two equal"]] * 3 == [to_hex(line.get_color()) for line in medians]
+    assert colors["a = b = c"] == to_hex(center.get_color())
+    assert len(set(colors.values())) == 3
+    widths = {name: line.get_linewidth() for name, line in handles.items()}
+    assert widths["a > b > c"] > widths["two equal"] == medians[0].get_linewidth()
+    texts = [text.get_text() for text in ax.get_legend().get_texts()]
+    assert [text.split(" dimension ")[1] for text in texts] == ["3", "2", "0"]
 
 
 @pytest.mark.parametrize(("kind", "angle"), [("A2", 60), ("B2", 45), ("C2", 45), ("G2", 30), ("A1 + A1", 90)])

@@ -74,6 +74,26 @@ def test_axes_in_the_plane_show_the_projection() -> None:
     assert [line.get_alpha() for line in axes.lines] == [0.3, None]
 
 
+@pytest.mark.parametrize("zoom", [1.0, 1.25, 2.0])
+def test_axes_in_the_plane_show_a_box_about_its_middle(zoom: float) -> None:
+    scene = Scene(lh.plotting.canvas.new_figure(3, 3).add_subplot())
+    half, middle = np.array([1.0, 2.0, 0.5]), np.array([0.3, -1.0, 4.0])
+    scene.limit(half, middle, zoom)
+    window = np.array([scene.axes.get_xlim(), scene.axes.get_ylim()])
+    assert np.allclose(window.mean(axis=1), scene.screen @ middle)
+    assert np.allclose(window[:, 1] - window[:, 0], 2.2 / zoom * np.abs(scene.screen) @ half)
+    assert scene.axes.get_aspect() == 1.0
+
+
+def test_axes_in_space_show_a_box_in_equal_scales() -> None:
+    axes = lh.plotting.canvas.new_figure(3, 3).add_subplot(projection="3d")
+    half, middle = np.array([1.0, 2.0, 0.5]), np.array([0.3, -1.0, 4.0])
+    Scene(axes).limit(half, middle)
+    window = np.array([axes.get_xlim(), axes.get_ylim(), axes.get_zlim()])
+    assert np.allclose(window, np.stack([middle - half, middle + half], axis=1))
+    assert np.allclose(axes._box_aspect / axes._box_aspect[0], half / half[0])
+
+
 @pytest.mark.parametrize("form", [np.diag([1.0, 0.0, 0.0]), -np.eye(3), np.zeros((3, 3))])
 def test_other_level_sets_raise(form: np.ndarray) -> None:
     with pytest.raises(lh.InputError, match="ellipsoid"):

@@ -118,8 +118,6 @@ class _Effective:
 
     def _derived(self) -> list[ExactMatrix]:
         """A basis of S: the images of all brackets of h."""
-        if self.d == 0 or self.r == 0:
-            return []
         rows = self._brackets(self.inner) @ self.inner.T
         return (rows @ self.flat).row_space().split_rows(self.d, self.d) if rows.nrows else []
 
@@ -163,8 +161,6 @@ class _Effective:
     # -- the centre of rho(h) ----------------------------------------------------------------------------
     def centre(self) -> tuple[str, Scalar | None]:
         """The centre of rho(h) as the key names it, and c^2 of a spiral."""
-        if self.d == 0 or self.r == 0:
-            return "", None
         central = (self._commuting() @ self.flat).row_space()
         matrices = central.split_rows(self.d, self.d) if central.nrows else []
         if len(matrices) != 1:

@@ -49,6 +49,25 @@ def test_representations_are_rounded_with_their_algebra() -> None:
     assert exact.matrices[1] == lh.QQ.matrix((y * 1).astype(int)).scale("1/3") and exact.appended == ((0, 1),)
 
 
+def test_completed_matrices_generate_an_algebra_of_the_same_dimension() -> None:
+    """The fractions leave a small symmetric part out, and generate so(3) in place of sl(3)."""
+    x, y = (a.to_numpy() for a in lh.defining(lh.so(3)).matrices[:2])
+    completed = lh.Representation.from_matrices([x, y + 1e-5 * np.diag([1.0, -2.0, 1.0])])
+    assert completed.algebra.dimension == 8
+    with pytest.raises(InputError, match="an algebra of dimension 3, the floats one of dimension 8"):
+        lh.rationalize(completed)
+
+
+def test_zeros_are_fractions() -> None:
+    exact, change = lh.rationalize(lh.abelian(2).over(lh.RR))
+    assert exact == lh.abelian(2) and change == 0.0
+
+
+def test_the_largest_change_is_relative_to_the_largest_entry() -> None:
+    g = lh.LieAlgebra({(0, 1): {0: 1 / 3 + 2e-7, 1: 4.0}}, field=lh.RR)
+    assert lh.rationalize(g, max_denominator=3).largest_change == pytest.approx(5e-8, rel=1e-6)
+
+
 def test_exact_objects_are_returned() -> None:
     pair = lh.pair("so(4)/so(3)")
     assert lh.rationalize(pair).exact is pair and lh.rationalize(pair.algebra).largest_change == 0.0

@@ -75,6 +75,18 @@ def test_attitude_under_a_torque_agrees_with_quaternions() -> None:
     np.testing.assert_allclose(again.y[:, -1], sol.y[:, -1], rtol=0, atol=1e-12)
 
 
+@pytest.mark.parametrize("frame", ["body", "space"])
+def test_every_body_of_an_ensemble_turns_by_its_own_torque(frame: str) -> None:
+    """One torque for all, and one for each body."""
+    momenta = np.array([[0.5, -0.2, 1.0], [0.0, 1.0, -0.3]])
+    for force in (lambda s: np.array([0.1, 0.0, -0.2]), lambda s: -0.1 * s.velocity):
+        body = lh.bodies.AttitudeBody(TENSOR, force, frame=frame)
+        together = body.integrate((0, 1), body.start(Q0, momentum=momenta), dt=0.1)
+        for k, m0 in enumerate(momenta):
+            alone = body.integrate((0, 1), body.start(Q0, momentum=m0), dt=0.1)
+            np.testing.assert_allclose(together.y[k], alone.y, rtol=0, atol=1e-13)
+
+
 def test_pose_under_a_wrench_agrees_with_kirchhoffs_equations() -> None:
     body, mu = lh.bodies.SE3Body(ADDED_MASS, wrench), np.array([0.5, -0.2, 1.0, 0.3, 0.1, -0.4])
     sol = body.integrate((0, 4), body.start(Q0, [1.0, 0, -1.0], momentum=mu), rtol=1e-10, atol=1e-10)

@@ -92,6 +92,16 @@ def test_a_lost_order_is_warned_of_where_the_call_is() -> None:
     assert [w.filename for w in caught] == [__file__] * 2
 
 
+def test_a_call_that_an_engine_repeats_warns_of_where_it_is() -> None:
+    """The second call of LLVM code with the same options takes another way than the first."""
+    field = lh.GeneratorField(lh.defining(lh.so(2, 1)), ["3/4 + 3*m0/4", "1/2", "-3*m1/4 - m2/4"])
+    propagator = lh.Propagator(field, lh.Corrected(lh.Euler(), 4), engine="llvm")
+    with pytest.warns(OrderWarning) as caught:
+        for _ in range(2):
+            propagator((0, 2), [0.6, 0.8, 0.0], dt=0.05)
+    assert [w.filename for w in caught] == [__file__] * 2
+
+
 # -- inner loops and inspections ---------------------------------------------------------------------------
 @pytest.mark.parametrize("engine", ["numpy", "llvm"])
 @pytest.mark.parametrize("options", [{"dt": 0.1}, {"rtol": 1e-6}, {"dt": 0.1, "t_eval": [0.5, 1.0]}])

@@ -113,6 +113,12 @@ def test_the_macrospin_solves_the_equation(damping: float) -> None:
     assert np.abs(np.linalg.norm(exact, axis=-1) - 1).max() < 1e-14
 
 
+@pytest.mark.parametrize(("m0", "field"), [([1.0, 0.0], Z), (Z, [1.0, 0.0]), (1.0, Z), (Z, np.zeros((3, 2)))])
+def test_spins_and_fields_have_three_components(m0: Any, field: Any) -> None:
+    with pytest.raises(lh.ShapeError, match="for both"):
+        macrospin(m0, field, 1.0)
+
+
 def test_the_macrospin_at_its_limits() -> None:
     assert np.abs(macrospin([[0.0, 0.6, -0.8], -Z, Z], Z, 1e6, damping=0.5) - [Z, -Z, Z]).max() < 1e-15
     assert np.abs(macrospin(Z[[2, 0, 1]], Z, np.pi / 2, gyromagnetic=-1.0) - [0, -1, 0]).max() < 1e-15

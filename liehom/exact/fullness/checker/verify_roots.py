@@ -73,10 +73,8 @@ def squarefree_parts(f: Coefficients) -> list[tuple[Coefficients, int]]:
     rest, slope = divided(f, common)[0], divided(derivative(f), common)[0]
     parts, multiplicity = [], 1
     while len(rest) > 1:
-        lead = derivative(rest)
-        length = max(len(slope), len(lead))
-        padded = [[*p, *[rest[-1] * 0] * (length - len(p))] for p in (slope, lead)]
-        other = trimmed([a - b for a, b in zip(*padded, strict=True)])
+        # rest is the product of the g_i with i >= m, slope the sum of (i - m + 1) g_i' rest/g_i: as long as rest'
+        other = trimmed([a - b for a, b in zip(slope, derivative(rest), strict=True)])
         part = gcd(rest, other)
         if len(part) > 1:
             parts.append((part, multiplicity))
@@ -128,8 +126,6 @@ def count_right_of(field: ExactField, f: Coefficients, cut: Scalar) -> int:
 
     A count is returned only if no root has real part equal to `cut`.
     """
-    if len(f) < 2:
-        return 0
     count = _count_right(field, shifted(f, cut))
     if count is not None:
         return count

@@ -12,7 +12,12 @@ import liehom as lh
 from liehom.base.errors import InputError, NotClosedError
 from liehom.exact.algebra import linear as mf
 from liehom.exact.algebra.linear.closure import lie_closure
-from liehom.exact.algebra.linear.generated_span import commutator_pairs, generated_span, spanning_commutators
+from liehom.exact.algebra.linear.generated_span import (
+    _GrowingSpan,
+    commutator_pairs,
+    generated_span,
+    spanning_commutators,
+)
 from liehom.exact.scalars.floating import RR
 from liehom.exact.scalars.modular import ModularSpan, product, rational_lifts
 from liehom.exact.scalars.number_fields import NumberField
@@ -145,3 +150,21 @@ def test_lifts_of_large_fractions() -> None:
     assert target in list(rational_lifts(residue, QQ))
     span = generated_span([QQ.matrix([[10**40, 1], [0, 3]]), QQ.matrix([[1, 0], [0, "1/7"]])])
     assert span is not None and span.rows.nrows == 3
+
+
+def test_uncertainties_of_commutators_contain_changes_of_their_factors() -> None:
+    """A member of the basis has its spectral norm, and the uncertainty of a commutator is reached within a factor 4."""
+    rng, span = np.random.default_rng(0), _GrowingSpan(3)
+    for error in (1e-6, 3e-6):
+        row = span.outside(rng.normal(size=(1, 9)), np.zeros(1))[0][0]
+        span.append(row, error * np.linalg.norm(row))
+    assert np.allclose(span.spectral, [np.linalg.norm(b.reshape(3, 3), 2) for b in span.basis])
+    rows, bounds = span.commutators(1, 2)
+    x, y = (b.reshape(3, 3) for b in span.basis)
+    assert np.allclose(rows, [(x @ y - y @ x).ravel(), np.zeros(9)])
+    largest = np.zeros(2)
+    for _ in range(300):
+        dx, dy = (d * e / np.linalg.norm(d) for d, e in zip(rng.normal(size=(2, 3, 3)), span.errors, strict=True))
+        changes = [dx @ y - y @ dx + x @ dy - dy @ x, dy @ y - y @ dy]
+        largest = np.maximum(largest, np.linalg.norm(np.reshape(changes, (2, 9)), axis=1))
+    assert largest[0] <= bounds[0] <= 4 * largest[0]

@@ -8,11 +8,12 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
+import numpy as np
 import pytest
 
 from liehom.base.errors import CertificateError, CertificateFormatError
 from liehom.exact.fullness.certificate import Certificate
-from liehom.exact.fullness.checker import verify_modular
+from liehom.exact.fullness.checker import verify, verify_modular
 from liehom.exact.fullness.checker.verify import verify_certificate
 from liehom.exact.fullness.checker.verify_pair import check_pair
 from liehom.exact.scalars.floating import RR
@@ -322,7 +323,7 @@ def test_table_without_homomorphism_fails_the_check_homomorphism() -> None:
 
 
 def test_constants_out_of_range() -> None:
-    for entry in ((1, 0, 2), (0, 0, 1), (0, 3, 1), (0, 1, 3), (-1, 0, 1)):
+    for entry in ((1, 0, 2), (0, 0, 1), (0, 3, 1), (0, 1, 3), (-1, 0, 1), (0, 1, -1)):
         refused(make(3, {entry: 1}, [[0, 0, 1]]), Certificate("trivial", {}), "pair")
     twice = Algebra(QQ, 3, ((0, 1, 2, QQ.one), (0, 1, 2, QQ.one)))
     refused(Pair(twice, SPHERE.subalgebra), SPHERE_FULL, "pair")
@@ -423,7 +424,7 @@ def test_the_embedding_decides() -> None:
     """With a = -sqrt(2) the circle is a hyperbola."""
     pair = affine([[[0, "-a"], [1, 0]]], MINUS_ROOT2)
     refused(pair, Certificate("full", ROOT_CIRCLE_FULL.to_fields(), MINUS_ROOT2), "form-definite")
-    refused(pair, ROOT_CIRCLE_FULL, "field")
+    assert "(-2, 0, 1) on (1, 2), the pair over QQ(a)" in str(refused(pair, ROOT_CIRCLE_FULL, "field"))
 
 
 def test_interval_with_three_roots_fails_the_check_field() -> None:
@@ -454,6 +455,18 @@ def test_each_check_of_a_full_certificate_fails_by_name(fields: dict[str, Any], 
     refused(SPHERE, changed(SPHERE_FULL, **fields), check)
 
 
+def test_forms_are_definite_if_their_eigenvalues_are_positive() -> None:
+    rng, answers = random.Random(4), []
+    for n in (1, 2, 3, 4) * 100:
+        rows = [[rng.randint(-2, 2) if i != j else rng.randint(1, 4) for i in range(n)] for j in range(n)]
+        form = QQ.matrix([[rows[min(i, j)][max(i, j)] for j in range(n)] for i in range(n)])
+        eigenvalues = np.linalg.eigvalsh(form.to_numpy())
+        if abs(eigenvalues[0]) > 1e-9:
+            answers.append(eigenvalues[0] > 0)
+            assert verify._is_positive_definite(form) is bool(answers[-1])
+    assert 50 < sum(answers) < len(answers) - 50
+
+
 def test_full_is_for_dimension_two_and_more() -> None:
     """R/0 at d = 1 would pass all other checks; the argument needs a connected sphere."""
     fields = {"form": [["1"]], "elements": [], "eta": ["1"]}
@@ -464,6 +477,7 @@ def test_full_is_for_dimension_two_and_more() -> None:
     ({"minpoly": ["4", "0", "-4", "0", "1"]}, "minpoly"),  # (t^2 - 2)^2
     ({"minpoly": ["2", "0", "1"]}, "interval"),  # no real root
     ({"interval": ["2", "1"]}, "interval"),
+    ({"minpoly": ["0", "-2", "1"], "interval": ["0", "1"]}, "interval"),  # a root at the end
     ({"interval": ["-2", "2"]}, "interval"),  # two roots
     ({"interval": ["2", "3"]}, "interval"), ({"minpoly": ["-3", "0", "1"]}, "phi-bracket"),
     ({"minpoly": ["0", "1"], "interval": ["0", "0"]}, "length"), ({"eta": ["1", "1"]}, "length"),
@@ -474,6 +488,11 @@ def test_full_is_for_dimension_two_and_more() -> None:
 ])  # fmt: skip
 def test_each_check_of_a_witness_fails_by_name(fields: dict[str, Any], check: str) -> None:
     refused(SPLIT, changed(SPLIT_NOT, **fields), check)
+
+
+def test_a_minpoly_need_not_be_monic() -> None:
+    assert verify_certificate(SPLIT, changed(SPLIT_NOT, minpoly=["-4", "0", "2"]))
+    refused(SPLIT, changed(SPLIT_NOT, minpoly=["-2", "0", "2"], interval=["0", "2"]), "phi-bracket")
 
 
 def test_interval_of_degree_one() -> None:
@@ -550,6 +569,10 @@ def test_a_complex_structure_splits_nothing() -> None:
 ])  # fmt: skip
 def test_each_check_of_a_dominance_certificate_fails_by_name(fields: dict[str, Any], check: str) -> None:
     refused(TENSOR, changed(TENSOR_NOT, **fields), check)
+
+
+def test_dominance_is_checked_in_dimension_one() -> None:
+    refused(make(1, {}, []), Certificate("dominance", {"element": ["0"], "cut": "-1", "eps": "1/2"}), "dominance")
 
 
 def test_another_cut_is_as_good() -> None:

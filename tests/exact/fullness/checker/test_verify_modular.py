@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import liehom as lh
-from liehom.base.errors import CertificateError
+from liehom.base.errors import CertificateError, LimitError
 from liehom.exact.fullness.checker import verify_modular, verify_pair
 from liehom.exact.fullness.checker.verify_modular import IntegralPair
 from liehom.exact.fullness.checker.verify_pair import check_pair
@@ -82,10 +82,19 @@ def test_every_prime_is_a_prime_with_a_root_and_small_enough_for_floats(field: A
 
 def test_few_primes_are_skipped() -> None:
     """Over QQ no prime is left out; over a number field those without a root are."""
-    limit = isqrt((1 << 53) // 64)
-    assert first_primes(QQ, 30, 10) == [p for p in range(limit, limit - 1000, -1) if is_prime(p)][:30]
+    for n, limit in ((10, 11863283), (70, 11343468), (75, 10958831)):
+        assert limit == isqrt((1 << 53) // max(n, 64))
+        assert first_primes(QQ, 30, n) == [p for p in range(limit, limit - 1000, -1) if is_prime(p)][:30]
     roots = [p for p in range(1 << 15, (1 << 15) + 2000) if is_prime(p) and any((x * x - 2) % p == 0 for x in range(p))]
     assert first_primes(ROOT2, 30, 10) == roots[:30]
+
+
+@pytest.mark.parametrize(
+    ("modulus", "p", "root"),
+    [((-2, 0, 0, 1), 5, 3), ((-2, 0, 0, 1), 7, None), ((-1, 0, 1), 7, 1), ((6, -5, 1), 101, 2)],
+)
+def test_the_smallest_root_modulo_a_prime(modulus: tuple[int, ...], p: int, root: int | None) -> None:
+    assert verify_modular._root(modulus, p) == root
 
 
 @pytest.mark.parametrize("candidate", [*range(3, 200), 32783, 32783**2, 11863279, 2**23 - 1, 4093 * 4099, 8191**2])
@@ -230,6 +239,12 @@ def test_the_bound_is_that_of_all_conjugates(field: Any) -> None:
     assert bound_of(data) >= 3 * conjugates(field, data.isotropy.entries()) ** 2 * 0.999
 
 
+def test_the_bound_counts_a_root_that_is_larger_than_all_coefficients() -> None:
+    golden = NumberField("g", [-1, -1, 1], (1, 2))
+    data = integral(make(2, {(0, 1, 1): golden.generator * 1000}, [[1, 0]], golden))
+    assert bound_of(data) >= 3 * 1618**2
+
+
 # -- as many primes as needed ------------------------------------------------------------------------------
 def primes_used(pair: Pair, monkeypatch: pytest.MonkeyPatch) -> tuple[list[int], int]:
     """The primes modulo which the pair is checked, and the bound that their product must exceed."""
@@ -314,6 +329,12 @@ def test_a_pair_for_which_the_primes_do_not_suffice_is_not_accepted(monkeypatch:
     monkeypatch.setattr(verify_modular, "_primes", lambda *_: iter(primes))
     assert failed(rotations(1)) is None
     assert failed(rotations(10**20)) == "pair"
+
+
+def test_a_long_proof_ends_with_the_time_that_is_allowed() -> None:
+    data = integral(rotations(1))
+    with lh.limits(seconds=0), pytest.raises(LimitError):
+        verify_modular.check_representation(data)
 
 
 # -- dense and sparse --------------------------------------------------------------------------------------

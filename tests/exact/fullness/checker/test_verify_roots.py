@@ -64,9 +64,15 @@ def test_quotient_times_divisor_plus_remainder() -> None:
         assert all(a + b == c for a, b, c in zip(*padded, strict=True))
 
 
+def test_values_are_those_of_the_polynomial() -> None:
+    assert value(polynomial(5, -1, 2), QQ.convert(3)) == 20
+    assert value([], QQ.convert(3)) == 0
+
+
 def test_gcd_and_squarefree_parts() -> None:
     f = with_roots(1, 1, 1, 2, 3 + 4j, 3 + 4j, 0)
     assert squarefree_parts(f) == [(with_roots(0, 2), 1), (with_roots(3 + 4j), 2), (with_roots(1), 3)]
+    assert squarefree_parts(with_roots(1, 1, 1, 2)) == [(with_roots(2), 1), (with_roots(1), 3)]
     assert gcd(f, with_roots(5, 2, 1, 1)) == with_roots(1, 1, 2)
     assert coprime(with_roots(1, 2), with_roots(3)) and not coprime(with_roots(1, 2), with_roots(2))
     assert coprime(polynomial(7), f) and not coprime(f, [])
