@@ -15,7 +15,7 @@ from liehom.flow.action.field import GeneratorField
 from liehom.flow.action.space import Action
 from liehom.flow.engines.jax_kernel import options_of
 from liehom.flow.engines.traced_step import SizeLimits, arg_values, first_size, judgement, tried_size
-from liehom.flow.run.control import MAX_RATE, MAX_SHRINK, MIN_RATE, RATE_SAMPLES, SLACK, whole_lattice
+from liehom.flow.run.control import MAX_RATE, MAX_SHRINK, MIN_RATE, SLACK, is_admissible, whole_lattice
 from liehom.flow.run.options import CLOCK, END, IMPLICIT, NOT_FINITE, TOO_MANY, TOO_SMALL
 from liehom.flow.steps.step import Generator, LocalStep, Step
 from liehom.flow.tracing.loop import StepGraph
@@ -57,10 +57,7 @@ class LocalOnJax(NamedTuple):
 
         if not self.clock:
             return jnp.ones(jnp.shape(s), dtype=bool)
-        parts = jnp.stack([s * (i / RATE_SAMPLES) for i in range(RATE_SAMPLES + 1)])
-        times = self.time(parts)
-        advance, part = (times[1:] - times[:-1]) * jnp.sign(s), jnp.abs(s) / RATE_SAMPLES
-        return jnp.all((advance > MIN_RATE * part) & (advance < MAX_RATE * part), axis=0) | (s == 0)
+        return is_admissible(self.clock, s)  # type: ignore[return-value]
 
     def size_for(self, time: JaxArray) -> tuple[JaxArray, JaxArray]:
         """The size s with tau(s) = time, by Newton's method, and whether it converged."""
