@@ -29,9 +29,9 @@ from liehom.flow.steps.step import (
 )
 
 # The time reparametrization τ of a step, its "clock": τ(h) is the time that passes in a step of size h. The clock is
-# admissible over a step if τ increases everywhere at between 1/5 and 5 times the nominal rate 1. Values at some points do
-# not prove it; Bernstein coefficients of τ' do, because τ' lies between the smallest and the largest of them. The step
-# size s with τ(s) = a given time is found by Newton's method.
+# admissible over a step if τ increases everywhere at between 1/5 and 5 times the nominal rate 1. Values at some points
+# do not prove it. Bernstein coefficients of τ' do, because τ' lies between the smallest and the largest of them. The
+# step size s with τ(s) = a given time is found by Newton's method.
 
 NEWTON_ITERATIONS = 60
 MIN_RATE = 0.2  # smallest admissible rate dτ/dh
