@@ -79,8 +79,8 @@ def kernel(name: str, body: Body, *, printed: bool = False) -> Update:
     body : Body
     printed : bool
         Use a formula as printed: for rk2_b (a minus sign between the stages) and sy4_o (<omega', m> for <omega'', m>)
-        with its misprint; for rk2_ib and sy4_b with the sign of the paper's other convention, sigma_ib of omega_b = +Om m
-        with omega_b = -Om m, and omega_b = +Om m in the formula of omega_b = -Om m.
+        with its misprint; for rk2_ib and sy4_b with a sign of the paper's other convention, sigma_ib of omega_b =
+        +Om m with omega_b = -Om m, and omega_b = +Om m in the formula of omega_b = -Om m.
 
     Examples
     --------
