@@ -57,7 +57,7 @@ class LocalOnJax(NamedTuple):
 
         if not self.clock:
             return jnp.ones(jnp.shape(s), dtype=bool)
-        return is_admissible(self.clock, s)  # type: ignore[return-value]
+        return is_admissible(self.clock, s)
 
     def size_for(self, time: JaxArray) -> tuple[JaxArray, JaxArray]:
         """The size s with tau(s) = time, by Newton's method, and whether it converged."""

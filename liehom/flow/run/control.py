@@ -46,7 +46,8 @@ def clock_at(local: LocalStep, h: Values) -> tuple[BooleanArray, Array]:
     size: Any = h
     if not local.clock:
         return np.ones(np.shape(size), dtype=bool), size
-    return is_admissible(local.clock, size), local.time(size)
+    passed: Any = local.time(size)
+    return is_admissible(local.clock, size), passed
 
 
 def is_admissible(clock: Sequence[tuple[int, Values]], h: Values) -> BooleanArray:
