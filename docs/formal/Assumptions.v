@@ -3,6 +3,7 @@ From Liehom Require Import Pair Sphere FullSound WitnessSound Commutant Dominanc
 
 Print Assumptions full_pairP.
 Print Assumptions jacobi_representation.
+Print Assumptions basis_lie_algebra.
 Print Assumptions trivial_pair_sound.
 Print Assumptions witness_pair_sound.
 Print Assumptions witness_sound_ext.
@@ -15,4 +16,5 @@ Print Assumptions dominance_pair_sound.
 Print Assumptions count_right.
 Print Assumptions dominance_count_sound.
 Print Assumptions check_coordinates_sound.
+Print Assumptions check_valid_sound.
 Print Assumptions check_sound.

@@ -114,3 +114,30 @@ def signatures_of_simple_ideals(colours: Sequence[str]) -> Any:
         axes.annotate(text, (root, level), xytext=(-6, 0), textcoords="offset points", ha="right", va="center")
     axes.set(xlabel="c", ylabel="signature", yticks=[-2, 0, 2, 4], xlim=(-3.2, 3.6))
     return figure
+
+
+@picture
+def isotropy_beyond_a_turn(colours: Sequence[str]) -> Any:
+    """Euler's step for damping with the isotropy s > 2 pi: its factor, and which starts approach the equilibrium."""
+    figure = new_figure(6.4, 3.2)
+    left, right = figure.subplots(1, 2)
+    sizes = np.geomspace(2.0, 100.0, 41)
+    turns = np.full(len(sizes), 2 * np.pi)
+    for _ in range(200):  # s = 2 (pi + e), tan e = s / (2 K h)
+        turns = 2 * np.pi + 2 * np.arctan(turns / 2 / sizes)
+    left.loglog(sizes, np.abs(1 - sizes), color=colours[1], linestyle="--", label="s = 0")
+    left.loglog(sizes, np.sin(turns / 2 - np.pi), color=colours[0], label="s above 2π")
+    left.axhline(1.0, color=GREY, linewidth=0.6)
+    left.set(xlabel="K h", ylabel="factor of a deviation", ylim=(0.02, 100.0))
+    left.legend(loc="upper left")
+    up, distances = np.array([0.0, 0.0, 1.0]), np.geomspace(0.008, 3.0, 28)
+    starts = np.stack([np.sin(distances), 0 * distances, np.cos(distances)], axis=-1)
+    for size, turn in zip(sizes[::2], turns[::2], strict=True):
+        field = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m, x=size, s=turn: x * np.cross(m, up) + s * m)
+        sol = lh.integrate(field, (0, 100), starts, step=lh.Euler(), dt=1.0, t_eval=[0.0, 100.0])
+        good = np.linalg.norm(sol.y[..., -1] - up, axis=-1) < 0.01 * distances
+        for chosen, mark, colour in ((good, "o", colours[0]), (~good, "x", colours[1])):
+            right.plot(np.full(chosen.sum(), size), distances[chosen], mark, color=colour, markersize=2.6)
+    right.plot(sizes, 2 * 2**0.5 * np.pi * sizes**-1.5, color=colours[6], linewidth=1.4)
+    right.set(xscale="log", yscale="log", xlabel="K h", ylabel="distance of the start", ylim=(0.007, 3.6))
+    return figure

@@ -44,6 +44,16 @@ def test_wrong_claims_are_rejected() -> None:
     assert outcomes == ["accepted", "rejected", "rejected"]
 
 
+def test_tables_that_break_the_jacobi_identity_are_rejected() -> None:
+    """[e0, e2] = e0, [e1, e2] = e2: h = <e0, e1> is closed and acts on g/h, and [e0, [e1, e2]] = e0 is not 0."""
+    trivial = {"format": "liehom-certificate", "version": 1, "kind": "trivial"}
+    table = {"dimension": 3, "structure_constants": [[0, 2, 0, "1"], [1, 2, 2, "1"]],
+             "subalgebra": [["1", "0", "0"], ["0", "1", "0"]]}  # fmt: skip
+    cases = [("Jacobi", table, trivial), ("Lie", {**table, "structure_constants": [[1, 2, 2, "1"]]}, trivial)]
+    outcomes = [outcome.split(":")[0] for outcome in agreement.of_program(cases)]
+    assert outcomes == ["rejected", "accepted"]
+
+
 @pytest.mark.skipif(shutil.which("coqc") is None, reason="Coq is not installed")
 def test_coq_itself_computes_the_check(tmp_path: Path) -> None:
     pair = lh.pair("so(3)/so(2)")
@@ -52,7 +62,7 @@ def test_coq_itself_computes_the_check(tmp_path: Path) -> None:
     program = agreement.program()
     command = [program, "--coq", "pair.json", "certificate.json"]
     source = subprocess.run(command, cwd=tmp_path, stdout=subprocess.PIPE, text=True, check=True).stdout
-    assert "Theorem verdict (R : rcfType) : pair_is_full R pair." in source
+    assert "Theorem verdict (R : rcfType) : pair_is_valid R pair /\\ pair_is_full R pair." in source
     (tmp_path / "verdict.v").write_text(source)
     theories = ["-w", "none", "-R", program.parent / "theories", "Liehom"]
     done = subprocess.run(["coqc", *theories, "verdict.v"], cwd=tmp_path, stdout=subprocess.PIPE, text=True, check=True)

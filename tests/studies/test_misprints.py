@@ -230,6 +230,25 @@ def test_sign_of_sigma_ib() -> None:
     assert np.allclose(errors[2][big] / errors[1][big], 2, atol=0.3)
 
 
+def test_sigma_ib_as_printed_belongs_to_the_list_of_generators() -> None:
+    """With omega_b = Om m and m' = m x xi the energy has E_1 = ... = E_4 = 0; without sigma_ib E_4 is not 0."""
+    m, moments = rational(POINT), rational(["1", "2", "3"])
+    squares = (np.prod(m) / m) ** 2
+    sums, gaps = moments.sum() - moments, np.roll(moments, -1) - np.roll(moments, -2)
+    top, bottom = -moments * sums * gaps**2, 4 * np.prod(moments) * moments**2 * gaps**2
+    sigma = (top @ squares) / (bottom @ squares)
+    action = lh.Action(BODY.representation, "cayley")
+
+    def heun(m: Any, h: Any) -> Any:
+        first = BODY.apply(m)
+        return h * (first + BODY.apply(action.act(-(h * first), m))) / 2
+
+    for factor, vanishes in ((1, True), (0, False), (-1, False)):
+        found = energy(lambda m, h, f=factor: -(heun(m, h) + f * sigma * (h**3 * m)), m, 4)
+        assert found[:3] == [0, 0, 0]
+        assert (found[3] == 0) == vanishes
+
+
 def test_dcayley_inverse() -> None:
     """y - u x y/2 + <u, y> u/4, which Runge-Kutta steps with Cayley use."""
     u, y = unit(9, 2, 3)

@@ -82,7 +82,7 @@ let file oracle p t c =
   let accepted, answers = recorded oracle (fun o -> check o p t c) in
   if not accepted then None
   else
-    let claim = if claims_full c then "pair_is_full R pair" else "~ pair_is_full R pair" in
+    let claim = "pair_is_valid R pair /\\ " ^ if claims_full c then "pair_is_full R pair" else "~ pair_is_full R pair" in
     Some
       (Printf.sprintf
          "From Coq Require Import ZArith.\nFrom mathcomp Require Import all_ssreflect ssrnum.\n\

@@ -1,7 +1,8 @@
 (** The checker: a pair, a certificate, and what an unproved program proposes for their verification.
 
-    [check_sound] is the theorem about the executable: whatever is proposed, if [check] returns true, then the pair has
-    the property that the kind of the certificate claims, over every real closed field. *)
+    [check_sound] is the theorem about the executable: whatever is proposed, if [check] returns true, then the data are a
+    Lie algebra with a basis of a subalgebra, and the pair has the property that the kind of the certificate claims,
+    over every real closed field. *)
 From Coq Require Import ZArith.
 From mathcomp Require Import all_ssreflect all_algebra.
 From Liehom Require Import Sound Pair Certificate FullSound CheckerAlgebra CheckerPair CheckerWitness CheckerFull CheckerCommutant CheckerDominance.
@@ -36,9 +37,10 @@ Definition check (o : oracle) (p : pair_data) (t : coordinates_hint) (c : certif
   end.
 
 Theorem check_sound (o : oracle) (p : pair_data) (t : coordinates_hint) (c : certificate) (R : rcfType) :
-  check o p t c -> if claims_full c then pair_is_full R p else ~ pair_is_full R p.
+  check o p t c -> pair_is_valid R p /\ if claims_full c then pair_is_full R p else ~ pair_is_full R p.
 Proof.
-case: c => [|f i|w|w|w] /andP [cc] /=;
+move=> ck; split; first by case/andP: ck => cc _; apply: check_valid_sound cc.
+move: ck; case: c => [|f i|w|w|w] /andP [cc] /=;
   [| | exact: check_witness_sound | exact: check_commutant_sound | exact: check_dominance_sound].
   move=> /Nat.leb_le/ssrnat.leP d1; have [[cl co _] <-] := check_coordinates_sound R cc.
   by apply/(full_pairP cl co); apply: trivial_sound.

@@ -33,6 +33,12 @@ Definition constants_of n (s : seq (constant fraction)) (i : 'I_n) : 'M[F]_n :=
 Definition dense m n (M : seq (seq fraction)) : 'M[F]_(m, n) :=
   \matrix_(i, j) frac (nth (Z0, Zpos xH) (nth [::] M i) j).
 
+(** The constants are those of a Lie algebra over the field F, and the rows are a basis of a subalgebra. *)
+Definition pair_is_valid (p : pair_data) : Prop :=
+  let c := constants_of (n := dimension p) (constants p) in
+  let h := dense (size (rows p)) (dimension p) (rows p) in
+  [/\ lie_algebra c, closed c h & row_free h].
+
 (** The pair is full: (6.4) for g over the field F. *)
 Definition pair_is_full (p : pair_data) : Prop :=
   full_pair (constants_of (n := dimension p) (constants p)) (dense (size (rows p)) (dimension p) (rows p)).
@@ -99,9 +105,21 @@ Let d := codimension t.
 
 Definition subalgebra_matrix : matrix := [seq sparse r.2 | r <- subalgebra t].
 
+(** ad of the basis elements of g, times scale. *)
+Definition tables : seq matrix := table n (replaced (constants p) (integers t)).
+
+Definition commutator (A B : matrix) : matrix := madd (mmul A B) (mscale (Zneg xH) (mmul B A)).
+
+(** The Jacobi identity for e_i, e_j and all other elements, i < j: ad [e_i, e_j] is the commutator of ad e_i and ad e_j,
+    reversed as these act on rows. *)
+Definition check_jacobi (ads : seq matrix) : bool :=
+  all (fun i => let a := nth [::] ads i in
+      all (fun b => msame (combine b.1 ads) (commutator b.2 a))
+        (zip (drop i.+1 a) (drop i.+1 ads))) (iota 0 n).
+
 (** ad of the rows of G, times scale; the isotropy representation of the rows of G, times scale and denominator. *)
 Definition adjoint : seq matrix :=
-  let ads := table n (replaced (constants p) (integers t)) in [seq combine g ads | g <- basis t].
+  let ads := tables in [seq combine g ads | g <- basis t].
 Definition isotropies (ads : seq matrix) : seq matrix := [seq mmul (mmul (section t) a) (quotient t) | a <- ads].
 
 Definition check_spaces : bool :=
@@ -123,8 +141,6 @@ Definition isotropy_of (isos : seq matrix) (z : vector) : matrix := combine (vmu
 Definition check_closed (ads isos : seq matrix) : bool :=
   all (fun a => msame (mscale (denominator t) (mmul a.1 (quotient t))) (mmul (quotient t) a.2)) (zip ads isos).
 
-Definition commutator (A B : matrix) : matrix := madd (mmul A B) (mscale (Zneg xH) (mmul B A)).
-
 (** rho([h_p, h_q]) is the commutator of rho(h_p) and rho(h_q), reversed as these act on rows. *)
 Definition check_representation (ads isos : seq matrix) : bool :=
   all (fun a => all (fun b =>
@@ -132,7 +148,7 @@ Definition check_representation (ads isos : seq matrix) : bool :=
       msame (combine (vmul w (dual t)) isos) (commutator b.2 a.2)) (zip (basis t) isos)) (zip ads isos).
 
 Definition check_coordinates (ads isos : seq matrix) : bool :=
-  [&& check_spaces, check_closed ads isos & check_representation ads isos].
+  [&& check_spaces, check_closed ads isos, check_representation ads isos & check_jacobi tables].
 End Check.
 
 (** ** Soundness *)
@@ -300,12 +316,38 @@ case: h_kerQ => hk Gh; split; last by rewrite Gh hk.
 exact: EQ1.
 Qed.
 
+Lemma tables_sound (i : 'I_n) : mat F n n (nth [::] (tables p t) i) = num (scale t) *: c_of i.
+Proof.
+apply/matrixP => j l; rewrite table_sound !mxE.
+by case/and5P: spaces => _ _ sc _ _; apply: replaced_sum.
+Qed.
+
+Lemma lie_algebra_c : check_jacobi p (tables p t) -> lie_algebra c_of.
+Proof.
+move=> jacobi; apply: basis_lie_algebra => [i j | i j lt].
+  apply/rowP => l; rewrite !mxE -sumrN; apply: eq_bigr => -[[[a b] x] y] _.
+  by rewrite /entry -mulrN opprB (andbC (a == i)) (andbC (b == i)).
+have sT : size (tables p t) = n by rewrite size_map size_iota.
+have sA (q : 'I_n) : size (nth [::] (tables p t) q) = n by rewrite (nth_map 0%N) ?size_map ?size_iota.
+move/(all_nthP 0%N): jacobi => /(_ i); rewrite size_iota ltn_ord => /(_ isT); rewrite nth_iota // add0n.
+move/(all_nthP ([::], [::])) => /(_ (j - i.+1)%N); rewrite size_zip !size_drop sT sA minnn.
+rewrite (ltn_sub2r (leq_ltn_trans lt (ltn_ord j)) (ltn_ord j)) => /(_ isT).
+rewrite nth_zip ?size_drop ?sT ?sA // !nth_drop subnKC //= => /(@mat_same F n n).
+rewrite (mat_combine _ _ _ (k := n)) ?sT // mat_add mat_scale numN1 scaleN1r !(mat_mul _ _ _ _ (eq_leq (sA _))) !tables_sound => e.
+apply: (scalerI (mulf_neq0 scale_neq0 scale_neq0)).
+have -> : num (scale t) * num (scale t) *: (c_of j *m c_of i - c_of i *m c_of j)
+    = num (scale t) *: c_of j *m (num (scale t) *: c_of i) - num (scale t) *: c_of i *m (num (scale t) *: c_of j).
+  by rewrite -!scalemxAl -!scalemxAr !scalerA scalerBr.
+rewrite -e /ad scaler_sumr; apply: eq_bigr => q _; rewrite tables_sound !scalerA; congr (_ *: _).
+have := congr1 (fun A : 'M_n => A j q) (tables_sound i); rewrite [LHS]mxE => ->.
+by rewrite !mxE mulrAC.
+Qed.
+
 Lemma ads_sound (r : 'I_k) : mat F n n (nth [::] ads r) = num (scale t) *: ad c_of (row r G_of).
 Proof.
 rewrite (nth_map [::]) ?size_G // (mat_combine _ _ _ (k := n)) ?size_map ?size_iota //.
 rewrite /ad scaler_sumr; apply: eq_bigr => i _; rewrite !mxE scalerA mulrC -scalerA; congr (_ *: _).
-apply/matrixP => j l; rewrite table_sound !mxE.
-by case/and5P: spaces => _ _ sc _ _; apply: replaced_sum.
+exact: tables_sound.
 Qed.
 
 Lemma size_ad (r : 'I_k) : (size (nth [::] ads r) <= n)%N.
@@ -398,7 +440,7 @@ Theorem check_coordinates_sound (F : numFieldType) (p : pair_data) (t : coordina
   valid_pair (c_of F p) (G_of F p t) (Q_of F p t) (E_of F p t) /\
   (full_pair (c_of F p) (G_of F p t) <-> pair_is_full F p).
 Proof.
-case/and3P => sp cl rp; split.
+case/and4P => sp cl rp _; split.
   split; [exact: closed_G | exact: coordinates_G | exact: representation_G].
 have [_ Gh] := h_kerQ F sp; rewrite /pair_is_full -/(c_of F p) -/(h_of F p).
 split=> f eta etah v.
@@ -406,4 +448,15 @@ split=> f eta etah v.
   by exists u, z, s; rewrite -!Gh.
 have [| u [z [s [uh zh ->]]]] := f eta _ v; first by rewrite -Gh.
 by exists u, z, s; rewrite !Gh.
+Qed.
+
+(** The data that the checker accepts are a Lie algebra and a basis of a subalgebra. *)
+Theorem check_valid_sound (F : numFieldType) (p : pair_data) (t : coordinates_hint) :
+  check_coordinates p t (adjoint p t) (isotropies t (adjoint p t)) -> pair_is_valid F p.
+Proof.
+case/and4P => sp cl _ jac; have [_ Gh] := h_kerQ F sp; split; first exact: lie_algebra_c jac.
+  have cb x y : (x <= h_of F p)%MS -> (y <= h_of F p)%MS -> (bracket (c_of F p) x y <= h_of F p)%MS.
+    by rewrite -!Gh; apply: closed_bracket; apply: closed_G.
+  by move=> r s; apply: cb; apply: row_sub.
+by rewrite /row_free -Gh rank_G.
 Qed.

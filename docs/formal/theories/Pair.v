@@ -146,6 +146,37 @@ rewrite [X in _ = _ - X]mulmxA (act p) (act q).
 by rewrite -mulmxBl jac addrK.
 Qed.
 
+(** Antisymmetry for basis elements, and the Jacobi identity for two of them and all others, make a Lie algebra. *)
+Lemma basis_lie_algebra (F : numFieldType) (n : nat) (c : 'I_n -> 'M[F]_n) :
+  (forall i j, row j (c i) = - row i (c j)) ->
+  (forall i j : 'I_n, (i < j)%N -> ad c (row j (c i)) = c j *m c i - c i *m c j) -> lie_algebra c.
+Proof.
+move=> anti jac.
+have double m (A : 'M[F]_(m, n)) : A = - A -> A = 0.
+  by move/eqP; rewrite -addr_eq0 -mulr2n -scaler_nat scaler_eq0 Num.Theory.pnatr_eq0 => /eqP.
+have adN x : ad c (- x) = - ad c x := linearN (ad_linear c) x.
+have adZ a x : ad c (a *: x) = a *: ad c x by exact: (linearZZ (ad_linear c)).
+have ad_sum (f : 'I_n -> 'rV_n) : ad c (\sum_i f i) = \sum_i ad c (f i) by exact: (linear_sum (ad_linear c)).
+have jac_all i j : ad c (row j (c i)) = c j *m c i - c i *m c j.
+  case: (ltngtP i j) => [|lt|/val_inj <-]; first exact: jac.
+    by rewrite anti adN jac // opprB.
+  by rewrite (double _ _ (anti i i)) -(scale0r 0) adZ scale0r subrr.
+have bracketE x y : bracket c x y = \sum_i \sum_j (x 0 i * y 0 j) *: row j (c i).
+  rewrite /bracket /ad mulmx_sumr; apply: eq_bigr => i _.
+  by rewrite -scalemxAr mulmx_sum_row scaler_sumr; apply: eq_bigr => j _; rewrite scalerA.
+have mulE x y : ad c x *m ad c y = \sum_i \sum_j (x 0 i * y 0 j) *: (c i *m c j).
+  rewrite /ad mulmx_suml; apply: eq_bigr => i _; rewrite mulmx_sumr; apply: eq_bigr => j _.
+  by rewrite -scalemxAl -scalemxAr scalerA.
+have adE x y : ad c (bracket c x y) = ad c y *m ad c x - ad c x *m ad c y.
+  rewrite bracketE ad_sum !mulE [X in _ = X - _]exchange_big -sumrB; apply: eq_bigr => i _.
+  rewrite ad_sum -sumrB; apply: eq_bigr => j _.
+  by rewrite adZ jac_all scalerBr (mulrC (y 0 j)).
+split=> [x | x y z].
+  apply: double; rewrite !bracketE [LHS]exchange_big -sumrN; apply: eq_bigr => i _.
+  by rewrite -sumrN; apply: eq_bigr => j _; rewrite (anti j i) scalerN (mulrC (x 0 j)).
+by rewrite /bracket -/(bracket c x y) adE mulmxBr !mulmxA subrK.
+Qed.
+
 (** Kind trivial: if g/h has dimension at most one, the pair is full: there is no x != 0, or Rx = V. *)
 Theorem trivial_sound (F : fieldType) (d k : nat) (r : 'I_k -> 'M[F]_d) : (d <= 1)%N -> full r.
 Proof.

@@ -255,7 +255,7 @@ def decide_numerically(pair: Pair, *, starts: int = 60, seed: int = 0) -> Numeri
     Returns
     -------
     NumericallyFull
-        If every pair within the error of the data is full, with a gap of at least 100.
+        If every pair within the error of the data is full, to first order in the error and with a gap of at least 100.
     NumericallyNotFull
         If the rank drops at some eta, up to rounding. Rounding alone can cause it.
     NumericallyUndecided

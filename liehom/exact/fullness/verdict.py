@@ -356,7 +356,7 @@ ANSWERS: dict[bool | None, str] = {True: "full", False: "not full", None: "undec
 
 @final
 class NumericallyFull(_Numerical):
-    """Numerically full: every pair within the error of the data is full.
+    """Numerically full: every pair within the error of the data is full, if errors are propagated to first order.
 
     Attributes
     ----------

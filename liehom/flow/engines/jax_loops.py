@@ -19,10 +19,10 @@ from liehom.flow.run.control import (
     MAX_RATE,
     MAX_SHRINK,
     MIN_RATE,
-    RATE_SAMPLES,
     SLACK,
     SizeLimits,
     first_size,
+    is_admissible,
     judgement,
     tried_size,
     whole_lattice,
@@ -68,10 +68,7 @@ class LocalOnJax(NamedTuple):
 
         if not self.clock:
             return jnp.ones(jnp.shape(s), dtype=bool)
-        parts = jnp.stack([s * (i / RATE_SAMPLES) for i in range(RATE_SAMPLES + 1)])
-        times = self.time(parts)
-        advance, part = (times[1:] - times[:-1]) * jnp.sign(s), jnp.abs(s) / RATE_SAMPLES
-        return jnp.all((advance > MIN_RATE * part) & (advance < MAX_RATE * part), axis=0) | (s == 0)
+        return is_admissible(self.clock, s)
 
     def size_for(self, time: JaxArray) -> tuple[JaxArray, JaxArray]:
         """The size s with tau(s) = time, by Newton's method, and whether it converged."""

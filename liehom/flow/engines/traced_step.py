@@ -192,7 +192,7 @@ def _traced(
     if own_clock:
         clock = tuple((k, _number(tape, c)) for k, c in local.clock)  # coefficients of h^k in τ(h), k > 1
         runs = _clock_is_admissible(tape, local.clock, h)
-        if limits is not None:  # adaptive steps are larger than fixed ones: the rate is sampled, as in a run
+        if limits is not None:  # adaptive steps are larger than fixed ones: the sharper test of a run
             runs = _number(tape, clock_at(local, h)[0])
     sizes = None
     if limits is not None:

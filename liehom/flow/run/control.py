@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
+from itertools import pairwise
+from math import comb
 from typing import Any, NamedTuple, final
 
 import numpy as np
@@ -25,13 +29,14 @@ from liehom.flow.steps.step import (
 )
 
 # The time reparametrization τ of a step, its "clock": τ(h) is the time that passes in a step of size h. The clock is
-# admissible over a step if τ increases everywhere at between 1/5 and 5 times the nominal rate 1. The step size s with
-# τ(s) = a given time is found by Newton's method.
+# admissible over a step if τ increases everywhere at between 1/5 and 5 times the nominal rate 1. Values at some points
+# do not prove it. Bernstein coefficients of τ' do, because τ' lies between the smallest and the largest of them. The
+# step size s with τ(s) = a given time is found by Newton's method.
 
 NEWTON_ITERATIONS = 60
 MIN_RATE = 0.2  # smallest admissible rate dτ/dh
 MAX_RATE = 5.0  # largest admissible rate dτ/dh
-RATE_SAMPLES = 4  # equal parts of a step over which the rate is measured
+RATE_PARTS = 4  # equal parts of a step with Bernstein coefficients of their own, which approximate τ' better
 MAX_HALVINGS = 40
 SLACK = 1e-9  # a step that ends this close to the end of the integration, in units of the step, ends there
 
@@ -41,11 +46,28 @@ def clock_at(local: LocalStep, h: Values) -> tuple[BooleanArray, Array]:
     size: Any = h
     if not local.clock:
         return np.ones(np.shape(size), dtype=bool), size
-    parts = np.arange(RATE_SAMPLES + 1).reshape(-1, *[1] * np.ndim(size)) / RATE_SAMPLES * size
-    times: Any = local.time(parts)
-    advance = (times[1:] - times[:-1]) * np.sign(size)
-    part = np.abs(size) / RATE_SAMPLES
-    return ((advance > MIN_RATE * part) & (advance < MAX_RATE * part)).all(axis=0) | (size == 0), times[-1]
+    passed: Any = local.time(size)
+    return is_admissible(local.clock, size), passed
+
+
+def is_admissible(clock: Sequence[tuple[int, Values]], h: Values) -> BooleanArray:
+    """Whether all Bernstein coefficients of τ' are between the admissible rates, so that τ' is on all of [0, h]."""
+    size: Any = h
+    rows = _bernstein(max(k for k, _ in clock) - 1)
+    rows = rows.reshape(*rows.shape, *[1] * np.ndim(size))
+    rates: Any = sum((rows[:, k - 1] * (k * c * size ** (k - 1)) for k, c in clock), 1.0)
+    return ((rates > MIN_RATE) & (rates < MAX_RATE)).all(axis=0) | (size == 0)
+
+
+@cache
+def _bernstein(degree: int) -> Array:
+    """Bernstein coefficients of 1, s, ..., s^degree on each of `RATE_PARTS` equal parts of [0, 1], a column for each.
+
+    Coefficient k of s^j on [a, b] is its polar form, an elementary symmetric function of a (degree - k times) and b.
+    """
+    parts = pairwise(np.arange(RATE_PARTS + 1) / RATE_PARTS)
+    forms = [np.poly([-a] * (degree - k) + [-b] * k) for a, b in parts for k in range(degree + 1) if a == 0 or k]
+    return np.array(forms) / [comb(degree, j) for j in range(degree + 1)]
 
 
 def size_for(local: LocalStep, time: Array, guess: Array) -> Array:

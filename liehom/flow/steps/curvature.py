@@ -292,9 +292,10 @@ def moving_frame_field(field: GeneratorField, *, orbit_dimension: int | None = N
 
     Notes
     -----
-    Section 8 of the paper. Euler's step with this generator captures orbits to order 2, and exactly if they are orbits
-    of one-parameter subgroups. The isotropy type is constant along an orbit, so psi is chosen stratum by stratum. It is
-    smooth along each orbit on which the range condition holds, and not across strata in general.
+    Section 8 of the paper. Euler's step with this generator captures orbits to order 2. It captures orbits of
+    one-parameter subgroups exactly if (*) determines zeta, as on S^2; on S^3 it does not, and the order is 2. The
+    isotropy type is constant along an orbit, so psi is chosen stratum by stratum. It is smooth along each orbit on
+    which the range condition holds, and not across strata in general.
 
     If the inner product on g is Ad-invariant, the choice is equivariant: psi(g m) = Ad_g psi(m) for every symmetry g of
     the vector field in the group. It depends on psi only through the vector field if zeta is determined by (*), as on

@@ -180,7 +180,7 @@ SETTINGS = (
 
 @dataclass(frozen=True, slots=True)
 class Misprint:
-    """Update whose formula the paper prints wrongly, with the order of the energy that the printed formula has."""
+    """Update that fails with a formula as printed, with the order of the energy that it has then."""
 
     update: str
     what: str
@@ -246,7 +246,7 @@ def figure4(quick: bool = False, seed: int = SEED) -> Reproduction:
     size, setting = scale(quick, seed), SETTINGS[1]
     misprints = (
         Misprint("rk2_b", "minus sign between the stages: xi = O(dt^2), nothing moves", 1),
-        Misprint("rk2_ib", "sigma_ib with J^n_j = -I_j (I_k + I_l)(I_k - I_l)^2", 3),
+        Misprint("rk2_ib", "sigma_ib of the convention omega_b = +Om m, with omega_b = -Om m", 3),
     )
     return _reproduction(setting, size, quick, (), misprints)
 
@@ -261,7 +261,7 @@ def figure5(quick: bool = False, seed: int = SEED) -> Reproduction:
     """
     size, setting = scale(quick, seed), SETTINGS[2]
     misprints = (
-        Misprint("sy4_b", "omega_b = +Om m, as in the list of section 4", 2),
+        Misprint("sy4_b", "omega_b = +Om m, in the formula of the convention omega_b = -Om m", 2),
         Misprint("sy4_o", "<omega', m> m in place of <omega'', m> m", 3),
         Misprint("sy4_o", "<omega', m> m in place of <omega'', m> m", 3, "axisymmetric"),
     )

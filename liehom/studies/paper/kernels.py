@@ -78,8 +78,9 @@ def kernel(name: str, body: Body, *, printed: bool = False) -> Update:
         One of the 13 names of Figure 6: eul_b, ..., rk4_o.
     body : Body
     printed : bool
-        Use the formula with the misprint of the paper, for rk2_b (a minus sign between the stages), rk2_ib (the sign of
-        sigma_ib), sy4_b (omega_b = +Om m, as the list of generators has it) and sy4_o (<omega', m> for <omega'', m>).
+        Use a formula as printed: for rk2_b (a minus sign between the stages) and sy4_o (<omega', m> for <omega'', m>)
+        with its misprint; for rk2_ib and sy4_b with a sign of the paper's other convention, sigma_ib of omega_b =
+        +Om m with omega_b = -Om m, and omega_b = +Om m in the formula of omega_b = -Om m.
 
     Examples
     --------

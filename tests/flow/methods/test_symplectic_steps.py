@@ -179,3 +179,33 @@ def test_too_large_steps_end_a_run_with_a_message(step: lh.Step) -> None:
     sol = lh.integrate(data.field, (0, 1000), 20 * data.start, step=step, dt=10.0)
     assert not sol.success
     assert "smaller step" in sol.message
+
+
+def test_a_poisson_map_that_is_not_hamiltonian_loses_the_energy_on_cylinders() -> None:
+    """On the dual of e(2), J -> J + h^3 is a Poisson map. After the flow of H = J^2/2 the energy grows without bound;
+    the variational midpoint for J^2/2 + p_1 keeps its energy, and is a Poisson map as well.
+    """
+    g, h = lh.euclidean(2), 0.1
+    turn = int(np.argmax(np.abs(np.diag(g.killing_form().to_numpy()))))
+    p = [k for k in range(3) if k != turn]
+    tensor = lh.action.lie_poisson_tensor
+
+    def step(m: Any, shift: float) -> Any:
+        angle = h * m[..., turn]
+        x, y = m[..., p[0]], m[..., p[1]]
+        out = np.array(m)
+        out[..., p[0]], out[..., p[1]] = x * np.cos(angle) - y * np.sin(angle), x * np.sin(angle) + y * np.cos(angle)
+        out[..., turn] += shift
+        return out
+
+    m, eps = np.array([0.7, -0.4, 0.9]), 1e-6
+    steps = eps * np.eye(3)
+    derivative = ((step(m + steps, h**3) - step(m - steps, h**3)) / (2 * eps)).T
+    assert np.allclose(derivative @ tensor(g, m) @ derivative.T, tensor(g, step(m, h**3)), atol=1e-8)
+    start = m
+    for _ in range(1000):
+        m = step(m, h**3)
+    assert m[turn] ** 2 / 2 - start[turn] ** 2 / 2 > 0.9
+    field = lh.hamiltonian_field(g, lambda m: m[..., turn] ** 2 / 2 + m[..., p[0]])
+    y = lh.integrate(field, (0, 100), start, step=lh.methods.VariationalMidpoint(), dt=h).y
+    assert np.ptp(y[turn] ** 2 / 2 + y[p[0]]) < 0.01

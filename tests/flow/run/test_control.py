@@ -23,6 +23,37 @@ def test_the_allowed_error_is_a_root_mean_square_and_never_below_round_off() -> 
     assert single[0] == pytest.approx(50 * np.finfo(np.float32).eps)
 
 
+def random_clocks(degree: int, count: int) -> tuple[list[tuple[int, Any]], Any, Any]:
+    """Clocks and sizes, some negative, and the rates at 401 points of the steps."""
+    rng = np.random.default_rng(degree)
+    scale = 10 ** rng.uniform(-1.5, 1, size=count)
+    clock = [(k, rng.normal(size=count) * scale) for k in range(2, degree + 1)]
+    h = rng.choice([-1, 1], count) * 10 ** rng.uniform(-0.3, 0.3, count)
+    s = np.linspace(0, 1, 401)[:, None] * h
+    return clock, h, sum((k * c * s ** (k - 1) for k, c in clock), np.ones_like(s))
+
+
+@pytest.mark.parametrize("degree", range(2, 9))
+def test_an_admissible_clock_keeps_its_rate_over_the_whole_step(degree: int) -> None:
+    clock, h, rates = random_clocks(degree, 3000)
+    found = control.is_admissible(clock, h)
+    assert rates[:, found].min() > control.MIN_RATE
+    assert rates[:, found].max() < control.MAX_RATE
+    within = ((rates > control.MIN_RATE) & (rates < control.MAX_RATE)).all(axis=0)
+    assert 1000 < found.sum() > 0.99 * within.sum()
+
+
+def test_a_clock_that_runs_backwards_between_samples_is_not_admissible() -> None:
+    """tau' = 1 + h - 2.1 h^2 is -0.1 at h = 1, and its mean over each quarter of [0, 1] is above 1/4."""
+    tau = np.polynomial.Polynomial([0, 1, 0.5, -0.7])
+    assert (4 * np.diff(tau(np.arange(5) / 4)) > 0.25).all()
+    m = np.array([1.0, 0.0])
+    local = LocalStep(lh.Action(lh.defining(lh.so(2))), m, lambda h: (h,), clock=((2, 0.5), (3, -0.7)))
+    assert [bool(control.clock_at(local, np.array(h))[0]) for h in (0.0, 0.5, 0.85, 1.0, -1.0)] == [
+        True, True, True, False, False,
+    ]  # fmt: skip
+
+
 def test_lengths_are_2_norms_in_float64() -> None:
     x = np.array([[3, 4], [5, 12], [0, 0]], dtype=np.float32)
     assert length(x).dtype == np.float64

@@ -61,6 +61,30 @@ def test_euler_with_the_frame_follows_axisymmetric_bodies_exactly() -> None:
         assert bool(np.abs(sol.y[:, -1] - body.exact(m, 10.0)).max() < 1e-13) is exact
 
 
+@pytest.mark.parametrize(("angles", "order"), [((1,), None), ((1, 2), 2)])
+def test_one_parameter_subgroups_are_followed_exactly_where_zeta_is_determined(
+    angles: tuple[int, ...], order: int | None
+) -> None:
+    """Rotations with these angular velocities: exact on S^2, of order 2 on S^3, where orbits have torsion."""
+    size = 2 * len(angles) + len(angles) % 2
+    turn = np.zeros((size, size))
+    for i, angle in enumerate(angles):
+        turn[2 * i + 1, 2 * i], turn[2 * i, 2 * i + 1] = angle, -angle
+    rho = lh.defining(lh.so(size))
+    field = lh.GeneratorField.from_vector_field(rho, lambda m: m @ turn.T)
+    m = np.array([0.6, 0.0, 0.8, 0.0])[:size]
+    exact = lh.integrate(field, (0, 2), m, step=lh.LieTaylor(12), dt=0.1).y[:, -1]
+    framed = lh.steps.moving_frame_field(field)
+    errors = [
+        np.linalg.norm(lh.integrate(framed, (0, 2), m, step=lh.Euler(), dt=h).y[:, -1] - exact) for h in (0.05, 0.025)
+    ]
+    if order is None:
+        assert max(errors) < 1e-12
+    else:
+        assert np.log2(errors[0] / errors[1]) == pytest.approx(order, abs=0.02)
+        assert errors[1] > 1e-4
+
+
 def sym_field() -> lh.GeneratorField:
     a = np.random.default_rng(4).normal(size=(3, 6))
     return lh.GeneratorField(lh.sym_conjugation(3), lambda m: m @ a.T + 0.3 * m[..., :3] * m[..., 3:])
