@@ -15,6 +15,7 @@ from liehom.base.objects import Displayed
 from liehom.exact.algebra.core.lie_algebra import LieAlgebra
 from liehom.exact.algebra.core.subalgebra import Subalgebra
 from liehom.exact.algebra.roots.real_form import canonical_real_form, join_real_forms
+from liehom.exact.pauli.span import WordSpan
 from liehom.exact.pauli.words import (
     Hamiltonian,
     PauliSums,
@@ -26,6 +27,7 @@ from liehom.exact.pauli.words import (
     word_table,
 )
 from liehom.exact.representations.core.representation import Representation
+from liehom.exact.scalars.exact_field import ExactMatrix
 from liehom.exact.scalars.field import Scalar
 
 # Names of the Lie algebras that Pauli words span. Let D be a set of words that is closed under commutators and
@@ -215,8 +217,6 @@ class DynamicalLieAlgebra(Displayed):
         The Hamiltonians that were given.
     words : tuple of str
         The words that occur in the algebra, qubit 0 first.
-    spanned_by_words : bool
-        Whether i times each of these words is in the algebra.
 
     Examples
     --------
@@ -234,12 +234,22 @@ class DynamicalLieAlgebra(Displayed):
         self.qubits: int = sums.qubits
         self.sums: PauliSums = sums
         self._integers: tuple[int, ...] = tuple(words)
-        self.spanned_by_words: bool = all(len(terms) == 1 for terms in sums.terms)
 
     @cached_property
     def words(self) -> tuple[str, ...]:
         """The words that occur in the algebra, a tuple of str."""
         return tuple(spell(word, self.qubits) for word in self._integers)
+
+    @cached_property
+    def _rows(self) -> ExactMatrix | None:
+        """The reduced echelon basis in coordinates on the words, or None if the words themselves are a basis."""
+        single = all(len(terms) == 1 for terms in self.sums.terms)
+        return None if single else WordSpan(self.sums, self._integers).basis()
+
+    @property
+    def spanned_by_words(self) -> bool:
+        """Whether i times each word in `words` is in the algebra."""
+        return self._rows is None
 
     @cached_property
     def word_algebra(self) -> LieAlgebra:
@@ -256,9 +266,8 @@ class DynamicalLieAlgebra(Displayed):
     def subalgebra(self) -> Subalgebra:
         """The algebra as a subalgebra of `word_algebra`; its rows are coefficients of words."""
         algebra = self.word_algebra
-        if self.spanned_by_words:
-            return Subalgebra(algebra, algebra.field.identity(algebra.dimension), check=False)
-        return algebra.subalgebra_generated_by([self._row(terms) for terms in self.sums.terms])
+        rows = algebra.field.identity(algebra.dimension) if self._rows is None else self._rows
+        return Subalgebra(algebra, rows, check=False)
 
     @cached_property
     def algebra(self) -> LieAlgebra:
@@ -268,14 +277,14 @@ class DynamicalLieAlgebra(Displayed):
     @property
     def dimension(self) -> int:
         """Dimension over the reals, an int."""
-        return len(self._integers) if self.spanned_by_words else self.subalgebra.dimension
+        return len(self._integers) if self._rows is None else self._rows.nrows
 
     @cached_property
     def ideals(self) -> tuple[WordIdeal, ...]:
-        """The ideals that connected sets of words generate, for generators that are single words."""
+        """The ideals that connected sets of words generate, if words span the algebra."""
         if not self.spanned_by_words:
-            raise InputError("a Hamiltonian has several terms; use algebra.simple_ideals() for its ideals")
-        return tuple(word_ideals([next(iter(terms)) for terms in self.sums.terms], self.qubits))
+            raise InputError("words do not span the algebra; use algebra.simple_ideals() for its ideals")
+        return tuple(word_ideals([word for terms in self.sums.terms for word in terms], self.qubits))
 
     @cached_property
     def name(self) -> str | None:
@@ -366,7 +375,8 @@ class DynamicalLieAlgebra(Displayed):
         return row
 
     def __repr__(self) -> str:
-        name = f" {self.name}" if self.spanned_by_words and self.name else ""
+        single = all(len(terms) == 1 for terms in self.sums.terms)
+        name = f" {self.name}" if single and self.name else ""
         return f"<dynamical Lie algebra{name} of {len(self.sums.terms)} Hamiltonians on {self.qubits} qubits>"
 
 

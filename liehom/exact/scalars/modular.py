@@ -5,7 +5,7 @@ from __future__ import annotations
 import random
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from math import isqrt
-from typing import final
+from typing import Any, final
 
 import flint
 import numpy as np
@@ -16,7 +16,7 @@ from liehom.base.typing import Array, IntegerArray
 from liehom.exact.scalars.exact_field import ExactField, ExactMatrix
 from liehom.exact.scalars.field import Field
 from liehom.exact.scalars.integer_matrices import echelon_pivots
-from liehom.exact.scalars.polynomial import horner, linear_root
+from liehom.exact.scalars.polynomial import horner, linear_root, linear_roots
 
 # A rank modulo a prime (by a residue map of the field onto F_p) is at most the true rank, so a bound that is reached
 # modulo p is reached. If it is not reached, numbers of the input may be multiples of p, and the exact rank decides.
@@ -52,6 +52,14 @@ def small_residues(field: ExactField, bound: int) -> Iterator[tuple[int, int]]:
         if root is not None:
             yield p, root
             remaining //= p
+
+
+def splitting_primes(field: ExactField) -> Iterator[tuple[int, list[int]]]:
+    """The primes p < 2^22 modulo which the minimal polynomial splits, from the largest on, with all its roots."""
+    modulus = field.modulus_coefficients()
+    for p in range((1 << 22) - 1, 0, -2):
+        if flint.fmpz(p).is_prime() and len(set(roots := linear_roots(modulus, p))) == field.degree:
+            yield p, roots
 
 
 def norm_bound(modulus: Sequence[int], bound: int) -> int:
@@ -137,7 +145,9 @@ def extending_rows(known: Sequence[flint.nmod_mat], candidates: Sequence[flint.n
 # sqrt(p / 2), and several primes together give larger ones (Wang). A lift is a proposal that the caller verifies.
 
 MAX_PRIMES = 12  # combined for one lift
+LIFTED_AT_ONCE = 1 << 18
 MAX_TERMS = 512  # products of residues below 2^22 in one sum, so that it stays below 2^53
+ROWS_AT_ONCE = 128  # that extend a span: those that depend on it vanish by one product, without elimination
 Residues = Array
 
 
@@ -162,8 +172,18 @@ class ModularSpan:
 
     def extend(self, rows: npt.ArrayLike) -> list[int]:
         """Add rows; return the list of indices of the rows that are independent of all earlier rows."""
+        table = np.asarray(rows, dtype=np.float64).reshape(-1, self.ncols)
+        kept: list[int] = []
+        for start in range(0, len(table), ROWS_AT_ONCE):
+            in_time()
+            if self.rank == self.ncols:
+                break
+            kept += [start + i for i in self._extend(table[start : start + ROWS_AT_ONCE])]
+        return kept
+
+    def _extend(self, rows: Residues) -> list[int]:
         p = self.modulus
-        rest = remainders(np.array(rows, dtype=np.float64).reshape(-1, self.ncols), p)
+        rest = remainders(rows, p)
         if self.rank:
             rest = remainders(rest - product(rest[:, self.pivots], self.rows, p), p)
         kept: list[int] = []
@@ -192,15 +212,17 @@ class ModularSpan:
         return self.rows[np.argsort(self.pivots)].astype(np.int64), sorted(self.pivots)
 
 
-def invariant_span(maps: npt.ArrayLike, rows: npt.ArrayLike, modulus: int) -> ModularSpan:
-    """The smallest space of rows modulo a prime below 2^22 that contains the given rows and is invariant under maps."""
-    frontier, matrices = np.asarray(rows, dtype=np.float64), np.asarray(maps, dtype=np.float64)
-    n = frontier.shape[1]
-    span = ModularSpan(modulus, n)
+def invariant_span(maps: Sequence[Any], rows: npt.ArrayLike, modulus: int) -> ModularSpan:
+    """The smallest space of rows modulo a prime below 2^22 that contains the given rows and is invariant under maps.
+
+    A map is a matrix (n, n) of residues, an array or a sparse array; an array (k, n, n) stands for k maps.
+    """
+    frontier = np.asarray(rows, dtype=np.float64)
+    span = ModularSpan(modulus, frontier.shape[1])
     frontier = frontier[span.extend(frontier)]
-    while len(frontier) and span.rank < n:
-        images = product(frontier, matrices, modulus).reshape(-1, n)
-        frontier = images[span.extend(images)]
+    while len(frontier) and span.rank < span.ncols:
+        images = (product(frontier, matrix, modulus).reshape(-1, span.ncols) for matrix in maps)
+        frontier = np.concatenate([image[span.extend(image)] for image in images])
     return span
 
 
@@ -228,10 +250,11 @@ def remainders(values: Residues, modulus: int) -> Residues:
     return values - modulus * np.floor(values / modulus)
 
 
-def product(left: Residues, right: Residues, modulus: int) -> Residues:
-    """The matrix product modulo a prime below 2^22, exactly: sums of at most 512 terms at a time."""
+def product(left: Residues, right: Any, modulus: int) -> Residues:
+    """The product by an array or a sparse array modulo a prime below 2^22, exactly: sums of at most 512 terms each."""
     total: Residues = remainders(left[..., :MAX_TERMS] @ right[..., :MAX_TERMS, :], modulus)
     for start in range(MAX_TERMS, left.shape[-1], MAX_TERMS):
+        in_time()
         end = start + MAX_TERMS
         total = remainders(total + left[..., start:end] @ right[..., start:end, :], modulus)
     return total
@@ -264,19 +287,42 @@ def rational_lifts(make: Callable[[int], flint.nmod_mat | None], field: Field) -
     first = make(0)
     if first is None:
         return
-    shape, modulus = (first.nrows(), first.ncols()), int(first.modulus())
-    values = [int(x) for x in first.entries()]
+    shape, image, lift = (first.nrows(), first.ncols()), first, RationalLift()
     for attempt in range(1, MAX_PRIMES):
-        lifted = _lifted(values, modulus)
-        if lifted is not None:
-            yield field.from_entries(lifted, *shape)
-        further = make(attempt)
-        if further is None or (further.nrows(), further.ncols()) != shape:
+        lift.add([int(x) for x in image.entries()], int(image.modulus()))
+        fractions = lift.fractions()
+        if fractions is not None:
+            yield field.from_entries(fractions, *shape)
+        image = make(attempt)
+        if image is None or (image.nrows(), image.ncols()) != shape:
             return
-        p = int(further.modulus())
-        inverse, pairs = pow(modulus, -1, p), zip(values, further.entries(), strict=True)
-        values = [v + modulus * ((int(r) - v) * inverse % p) for v, r in pairs]
-        modulus *= p
+
+
+@final
+class RationalLift:
+    """Rational numbers that are known modulo more and more primes; equal ones are lifted once."""
+
+    def __init__(self) -> None:
+        self.modulus = 1
+        self._values = [0]  # the distinct numbers modulo the modulus
+        self._index: list[int] = []  # of each number in these
+
+    def add(self, residues: Sequence[int], p: int) -> None:
+        """The residues of the same numbers modulo another prime."""
+        known, index = self._index or [0] * len(residues), list[int]()
+        classes: dict[tuple[int, int], int] = {}
+        for start in range(0, len(residues), LIFTED_AT_ONCE):
+            in_time()
+            part = slice(start, start + LIFTED_AT_ONCE)
+            index += [classes.setdefault(key, len(classes)) for key in zip(known[part], residues[part], strict=True)]
+        inverse, m = pow(self.modulus, -1, p), self.modulus
+        self._values = [(v := self._values[i]) + m * ((r - v) * inverse % p) for i, r in classes]
+        self._index, self.modulus = index, m * p
+
+    def fractions(self) -> list[flint.fmpq] | None:
+        """Fractions with these residues, of numerator and denominator below sqrt(modulus / 2), if all have one."""
+        fractions = _lifted(self._values, self.modulus)
+        return None if fractions is None else [fractions[i] for i in self._index]
 
 
 def lifted(values: Residues, modulus: int, field: Field) -> ExactMatrix | None:
