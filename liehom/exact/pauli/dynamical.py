@@ -14,8 +14,11 @@ from liehom.base.errors import InputError
 from liehom.base.objects import Displayed
 from liehom.exact.algebra.core.lie_algebra import LieAlgebra
 from liehom.exact.algebra.core.subalgebra import Subalgebra
-from liehom.exact.algebra.roots.real_form import canonical_real_form, join_real_forms
-from liehom.exact.pauli.span import WordSpan
+from liehom.exact.algebra.roots.real_form import canonical_real_form, join_real_forms, real_forms
+from liehom.exact.algebra.roots.root_system import join_types
+from liehom.exact.algebra.structure.identification import lines_of_forms
+from liehom.exact.pauli.simple_ideals import simple_types
+from liehom.exact.pauli.span import LiftedRows, WordSpan
 from liehom.exact.pauli.words import (
     Hamiltonian,
     PauliSums,
@@ -27,7 +30,6 @@ from liehom.exact.pauli.words import (
     word_table,
 )
 from liehom.exact.representations.core.representation import Representation
-from liehom.exact.scalars.exact_field import ExactMatrix
 from liehom.exact.scalars.field import Scalar
 
 # Names of the Lie algebras that Pauli words span. Let D be a set of words that is closed under commutators and
@@ -241,7 +243,7 @@ class DynamicalLieAlgebra(Displayed):
         return tuple(spell(word, self.qubits) for word in self._integers)
 
     @cached_property
-    def _rows(self) -> ExactMatrix | None:
+    def _rows(self) -> LiftedRows | None:
         """The reduced echelon basis in coordinates on the words, or None if the words themselves are a basis."""
         single = all(len(terms) == 1 for terms in self.sums.terms)
         return None if single else WordSpan(self.sums, self._integers).basis()
@@ -266,7 +268,7 @@ class DynamicalLieAlgebra(Displayed):
     def subalgebra(self) -> Subalgebra:
         """The algebra as a subalgebra of `word_algebra`; its rows are coefficients of words."""
         algebra = self.word_algebra
-        rows = algebra.field.identity(algebra.dimension) if self._rows is None else self._rows
+        rows = algebra.field.identity(algebra.dimension) if self._rows is None else self._rows.matrix()
         return Subalgebra(algebra, rows, check=False)
 
     @cached_property
@@ -277,7 +279,7 @@ class DynamicalLieAlgebra(Displayed):
     @property
     def dimension(self) -> int:
         """Dimension over the reals, an int."""
-        return len(self._integers) if self._rows is None else self._rows.nrows
+        return len(self._integers) if self._rows is None else len(self._rows.pivots)
 
     @cached_property
     def ideals(self) -> tuple[WordIdeal, ...]:
@@ -315,14 +317,34 @@ class DynamicalLieAlgebra(Displayed):
         """
         on = f"{self.qubits} qubit{'s' if self.qubits > 1 else ''}"
         title = f"dynamical Lie algebra of dimension {self.dimension} on {on}"
-        if not self.spanned_by_words or self.name is None:
-            return "\n".join([title, *self.algebra.describe().splitlines()[1:]])
+        if self.name is None:
+            lines = self._structure() or [line.strip() for line in self.algebra.describe().splitlines()[1:]]
+            return "\n  ".join([title, *lines])
         lines = [title, f"  {self.name}"]
         for ideal in self.ideals:
             count = f"{ideal.copies} {ideal.kind}" if ideal.copies > 1 else ideal.kind
             number = len(ideal.words)
             lines.append(f"  {count}, spanned by {number} Pauli word{'s' if number > 1 else ''}")
         return "\n".join(lines)
+
+    def _structure(self) -> list[str]:
+        """The lines of `LieAlgebra.describe` without a table: the algebra is compact. None if a type remains open."""
+        span = WordSpan(self.sums, self._integers)
+        basis = span.basis(derived=True)
+        d, derived = self.dimension, span.size if basis is None else len(basis.pivots)
+        types = simple_types(span, basis) if derived else []
+        if types is None:
+            return []
+        sizes = f"nilradical of dimension {d - derived}, centre of dimension {d - derived}"
+        series = f"derived series {d} > {derived}, lower central series {d} > {derived}"
+        form = f"Killing form of signature (0, {derived}, {d - derived}) (positive, negative, zero)"
+        if not derived:
+            return ["abelian", sizes, series, form]
+        lines = lines_of_forms(join_types(types), [real_forms(t)[-1] for t in types])  # the compact ones
+        if derived == d:
+            return [*lines, form]
+        parts = f"reductive: Levi factor of dimension {derived}, radical of dimension {d - derived}"
+        return [parts, f"Levi factor: {lines[0]}", sizes, series, form]
 
     def representation(self) -> Representation:
         """The representation on C^N, N = 2 to the number of qubits: basis elements as N x N skew-Hermitian matrices.
