@@ -236,6 +236,7 @@ class DynamicalLieAlgebra(Displayed):
         self.qubits: int = sums.qubits
         self.sums: PauliSums = sums
         self._integers: tuple[int, ...] = tuple(words)
+        self._are_words: bool = all(len(terms) == 1 for terms in sums.terms)
 
     @cached_property
     def words(self) -> tuple[str, ...]:
@@ -245,8 +246,7 @@ class DynamicalLieAlgebra(Displayed):
     @cached_property
     def _rows(self) -> LiftedRows | None:
         """The reduced echelon basis in coordinates on the words, or None if the words themselves are a basis."""
-        single = all(len(terms) == 1 for terms in self.sums.terms)
-        return None if single else WordSpan(self.sums, self._integers).basis()
+        return None if self._are_words else WordSpan(self.sums, self._integers).basis()
 
     @property
     def spanned_by_words(self) -> bool:
@@ -397,8 +397,7 @@ class DynamicalLieAlgebra(Displayed):
         return row
 
     def __repr__(self) -> str:
-        single = all(len(terms) == 1 for terms in self.sums.terms)
-        name = f" {self.name}" if single and self.name else ""
+        name = f" {self.name}" if self._are_words and self.name else ""
         return f"<dynamical Lie algebra{name} of {len(self.sums.terms)} Hamiltonians on {self.qubits} qubits>"
 
 

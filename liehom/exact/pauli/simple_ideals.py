@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from itertools import islice
 
-import flint
 import numpy as np
 
 from liehom.base.budget import in_time
@@ -13,39 +12,17 @@ from liehom.exact.pauli.span import LiftedRows, WordSpan
 from liehom.exact.scalars.modular import (
     ModularSpan,
     Residues,
+    eigenvalues,
     invariant_span,
     left_kernel,
     product,
     remainders,
-    residue_matrix,
     residues,
     splitting_primes,
 )
-from liehom.exact.scalars.polynomial import linear_roots
 
-# Let s be the derived algebra of a dynamical Lie algebra, which is compact and semisimple, and S its reduction modulo a
-# prime p, of the same dimension. The trace form of the representation is the dot product of coefficients of words.
-#
-# 1. Let x in S be random and h its centralizer. If h is abelian and the trace form is not degenerate on h, then
-#    dim h = rank s. For h is the reduction of the Fitting null component of ad x for a lift of x. If that were larger
-#    than a Cartan subalgebra, it would contain a root vector e, and some f with tr(ef) a unit. Modulo p both commute, and
-#    e is nilpotent, so that tr(ef) = 0.
-# 2. The projections of x to the simple ideals satisfy [[u, a], [x, b]] = [[x, a], [u, b]] for all a, b in S, and so
-#    does the image of x under every map of the centroid. The u in h that satisfy these equations for some a and b form
-#    a space U. It is closed under the product u * v with [[u * v, a], [x, b]] = [[u, a], [v, b]]. If the product by some
-#    u has distinct eigenvalues in F_p, let x_1, ..., x_k be its eigenvectors and I_j the ideal that x_j generates.
-# 3. If S is the direct sum of the I_j, the centroid of I_j is F_p, as it maps x_j into the intersection of U with I_j.
-#    If the trace form is not degenerate on I_j, the Killing form is therefore a multiple of it, and I_j is absolutely
-#    simple if tr (ad x_j)^2 is not 0 on it. An algebra with such a Killing form is rigid (its second cohomology with
-#    values in itself vanishes, as the Casimir operator is 1), so that s has simple ideals of the dimensions of the I_j.
-#    Their ranks are at most the dimensions of the centralizers of x_j in I_j, with the sum rank s.
-#
-# 4. Dimension and rank leave open B_n or C_n, n >= 3, or E6 with n = 6. The Dynkin index of the representation is twice
-#    the dual Coxeter number times the trace form over the Killing form, a positive integer with a known bound. The
-#    residue excludes a type for which it is not.
-#
-# Every condition is checked. A prime for which one fails is left for the next one. The eigenvalues are in F_p for the
-# primes that split the centroid, one of m! on average at worst if m ideals are conjugate over the field.
+# Proof and notation: docs/theory/structure.md, "Compact algebras modulo a prime". Every condition is checked; where one
+# fails, the next prime is taken.
 
 PRIMES = 40  # that are tried
 TESTS = 2  # pairs a, b
@@ -103,20 +80,15 @@ class _Reduction:
         conditions = []
         for _ in range(TESTS):
             a, b = self._random(self.rows, 2)
-            left = self._double(cartan, x, a, b)
-            right = product(product(cartan, self._ad(b), p), self._ad(self._bracket(x, a)), p)  # -[[x, a], [u, b]]
-            conditions.append(left + right)
+            conditions.append(self._double(cartan, a, x, b) + self._double(cartan, b, x, a))
         space = self._kernel(cartan, remainders(np.hstack(conditions), p))
         (u,) = self._random(space, 1)
-        one, other = self._double(space, x, a, b), self._double(space, u, a, b)
+        one, other = self._double(space, a, x, b), self._double(space, a, u, b)
         span = ModularSpan(p, self.span.size)
         if len(span.extend(one)) < len(space):
             return []
-        by_x, by_u = (self._flint(values[:, span.pivots]) for values in (one, other))
-        matrix = by_u * by_x.inv()
-        table = np.array([int(v) for v in matrix.entries()], dtype=np.float64).reshape(len(space), len(space))
-        values = linear_roots([int(c) for c in matrix.charpoly().coeffs()], p)
-        return [self._kernel(space, remainders(table - c * np.eye(len(space)), p))[0] for c in values]
+        values = eigenvalues(other[:, span.pivots], one[:, span.pivots], p)
+        return [self._kernel(space, remainders(other - c * one, p))[0] for c in values]
 
     def _ideal(self, y: Residues, whole: ModularSpan) -> Ideal | None:
         """The ideal that y generates, which is added to a span; None if a condition fails."""
@@ -140,12 +112,10 @@ class _Reduction:
         in_time()
         return self.span.dense_map(y, self.p)
 
-    def _bracket(self, y: Residues, z: Residues) -> Residues:
-        return product(z[None], self._ad(y), self.p)[0]
-
-    def _double(self, rows: Residues, y: Residues, a: Residues, b: Residues) -> Residues:
+    def _double(self, rows: Residues, a: Residues, y: Residues, b: Residues) -> Residues:
         """[[u, a], [y, b]] for the rows u."""
-        return product(product(rows, self._ad(a), self.p), self._ad(self._bracket(y, b)), self.p)
+        (bracket,) = product(b[None], self._ad(y), self.p)
+        return product(product(rows, self._ad(a), self.p), self._ad(bracket), self.p)
 
     def _random(self, rows: Residues, count: int) -> Residues:
         return product(self.rng.integers(self.p, size=(count, len(rows))).astype(np.float64), rows, self.p)
@@ -156,7 +126,4 @@ class _Reduction:
 
     def _is_nondegenerate(self, rows: Residues) -> bool:
         """Whether the dot product is not degenerate on the span of independent rows."""
-        return int(self._flint(product(rows, rows.T, self.p)).rank()) == len(rows)
-
-    def _flint(self, table: Residues) -> flint.nmod_mat:
-        return residue_matrix(*table.shape, table.astype(np.int64).ravel().tolist(), self.p)
+        return len(ModularSpan(self.p, len(rows)).extend(product(rows, rows.T, self.p))) == len(rows)

@@ -9,7 +9,6 @@ from functools import cached_property
 from math import lcm
 from typing import Any, final
 
-import flint
 import numpy as np
 
 from liehom.base.budget import in_time
@@ -21,6 +20,7 @@ from liehom.exact.scalars.modular import (
     RationalLift,
     ResidueMap,
     Residues,
+    interpolated,
     invariant_span,
     product,
     remainders,
@@ -30,20 +30,14 @@ from liehom.exact.scalars.modular import (
     splitting_primes,
 )
 
-# Let W be the span of the w words that occur, and g the algebra that the sums generate, a subspace of W.
-#
-# Lower bound. Elements of g with integral coefficients reduce modulo a prime to elements of an algebra that contains
-# the closure of the reduced generators. So the rank of that closure is at most dim g. If it is w, then g = W.
-#
-# Upper bound. The reduced echelon basis of the closure, for several primes, is lifted to a matrix E = R / D over the
-# field (Wang). If the span of the rows of E contains the generators g_a and all [g_a, row], it contains g, and dim g is
-# at most the number of rows. With the pivot columns P of E this says
+# Elements with integral coefficients reduce modulo a prime to elements of the closure of the reduced generators. So the
+# rank of that closure is at most dim g. The echelon basis E = R / D that is lifted from several closures bounds dim g
+# from above if its span contains the generators g_a and the commutators [g_a, row]. With the pivot columns P of E:
 #
 #     D g_a = (g_a)_P R,    D [g_a, R] = [g_a, R]_P R.
 #
-# The differences are sums of products of integers with a known bound, so they vanish if they vanish modulo enough
-# primes. A lift from too few primes fails there, and one prime more is taken. E exists, so this ends.
-
+# The differences are sums of products of integers with a known bound: they vanish if they do modulo enough primes. A
+# lift from too few primes fails there, and one prime more is taken. E exists, so this ends.
 
 DENSE = 1 / 32  # of all entries, from which a matrix is not held sparse
 
@@ -151,9 +145,7 @@ class WordSpan:
                 best, lift = rank, RationalLift()
             free = sorted(set(range(self.size)) - set(pivots))
             values = np.array([rows[:, free].ravel() for rows, _ in spans], dtype=np.float64)
-            powers = flint.nmod_mat(m, m, [pow(root, s, p) for root in roots for s in range(m)], p).inv().entries()
-            values = product(np.array([int(x) for x in powers], dtype=np.float64).reshape(m, m), values, p)
-            lift.add(values.astype(np.int64).ravel().tolist(), p)
+            lift.add(interpolated(values, roots, p).astype(np.int64).ravel().tolist(), p)
             if (fractions := lift.fractions()) is not None:
                 den = lcm(*(int(f.q) for f in fractions))
                 numerators = [int(f.p) * (den // int(f.q)) for f in fractions]

@@ -284,6 +284,19 @@ def product(left: Residues, right: ResidueMap, modulus: int) -> Residues:
     return total
 
 
+def eigenvalues(first: Residues, second: Residues, modulus: int) -> list[int]:
+    """The c in F_p with det(A - c B) = 0, for an invertible B."""
+    a, b = (residue_matrix(*m.shape, m.astype(np.int64).ravel().tolist(), modulus) for m in (first, second))
+    return linear_roots([int(c) for c in (a * b.inv()).charpoly().coeffs()], modulus)
+
+
+def interpolated(values: Residues, points: Sequence[int], modulus: int) -> Residues:
+    """The coefficients (m, n), ascending, of n polynomials with given values (m, n) at m points modulo a prime."""
+    m = len(points)
+    powers = residue_matrix(m, m, (pow(x, s, modulus) for x in points for s in range(m)), modulus).inv()
+    return product(np.array([int(x) for x in powers.entries()], dtype=np.float64).reshape(m, m), values, modulus)
+
+
 def residue_map(field: ExactField) -> tuple[int, int]:
     """A prime below 2^22 and the image of the integral generator modulo it."""
     return next(small_residues(field, 1 << 40))
