@@ -302,7 +302,7 @@ class DynamicalLieAlgebra(Displayed):
     def describe(self) -> str:
         """Dimension, name and ideals as lines of text.
 
-        Words are identified by linear algebra over F_2, sums of words by `LieAlgebra.describe`.
+        Words are identified by linear algebra over F_2. Other algebras have the lines of `LieAlgebra.describe`.
 
         Examples
         --------
@@ -424,7 +424,8 @@ def closure(hamiltonians: Iterable[Hamiltonian], *, qubits: int | None = None) -
     Notes
     -----
     Words are bit vectors, and commutators of words are computed over F_2. The closure of single words needs no linear
-    algebra. For sums, the words that occur span a larger Lie algebra, in which the subalgebra is computed exactly.
+    algebra. For sums, the words that occur may span a larger Lie algebra. The subalgebra is computed modulo primes and
+    lifted when it is first asked for, and its dimension is proved. The limit `seconds` of `liehom.limits` ends this.
 
     Examples
     --------

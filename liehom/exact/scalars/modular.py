@@ -212,7 +212,7 @@ class ModularSpan:
 
 
 def _eliminated(rest: Residues, p: int, most: int) -> tuple[list[int], list[int]]:
-    """Gauss-Jordan elimination in place; the independent rows, at most so many, and their pivots."""
+    """Gauss-Jordan elimination in place; up to `most` independent rows, and their pivots."""
     kept: list[int] = []
     pivots: list[int] = []
     for i in np.flatnonzero(rest.any(axis=1)).tolist():
