@@ -286,7 +286,8 @@ def product(left: Residues, right: ResidueMap, modulus: int) -> Residues:
 
 def eigenvalues(first: Residues, second: Residues, modulus: int) -> list[int]:
     """The c in F_p with det(A - c B) = 0, for an invertible B."""
-    a, b = (residue_matrix(*m.shape, m.astype(np.int64).ravel().tolist(), modulus) for m in (first, second))
+    n = len(first)
+    a, b = (residue_matrix(n, n, m.astype(np.int64).ravel().tolist(), modulus) for m in (first, second))
     return linear_roots([int(c) for c in (a * b.inv()).charpoly().coeffs()], modulus)
 
 
@@ -321,17 +322,15 @@ def flat_echelon(matrices: Sequence[flint.nmod_mat]) -> flint.nmod_mat:
 
 def rational_lifts(make: Callable[[int], flint.nmod_mat | None], field: Field) -> Iterator[ExactMatrix]:
     """Proposals, possibly wrong, for a matrix over QQ that is known modulo primes: from one prime, from two, ..."""
-    first = make(0)
-    if first is None:
-        return
-    shape, image, lift = (first.nrows(), first.ncols()), first, RationalLift()
-    for attempt in range(1, MAX_PRIMES):
+    shape, lift = (0, 0), RationalLift()
+    for attempt in range(MAX_PRIMES):
+        image = make(attempt)
+        if image is None or (attempt and (image.nrows(), image.ncols()) != shape):
+            return
+        shape = (image.nrows(), image.ncols())
         lift.add([int(x) for x in image.entries()], int(image.modulus()))
         if (distinct := lift.fractions()) is not None:
             yield field.from_entries([distinct[i] for i in lift.index], *shape)
-        image = make(attempt)
-        if image is None or (image.nrows(), image.ncols()) != shape:
-            return
 
 
 @final
