@@ -26,7 +26,7 @@ from liehom.exact.scalars.modular import (
 
 PRIMES = 40  # that are tried
 TESTS = 2  # pairs a, b
-DUAL_COXETER = {"B": lambda rank: 2 * rank - 1, "C": lambda rank: rank + 1, "E": lambda rank: 12}  # E6
+DUAL_COXETER = {"B": (2, -1), "C": (1, 1), "E": (0, 12)}  # a rank + b, for E6
 
 Ideal = tuple[int, int, int]
 """Dimension, rank, and the trace form divided by the Killing form modulo a prime."""
@@ -50,8 +50,11 @@ def _types(ideal: Ideal, qubits: int, p: int) -> list[str]:
     """The types that an ideal may have."""
     dimension, rank, ratio = ideal
     types = types_of(dimension, rank)
+    if len(types) == 1:
+        return types
     most = 8**qubits // 6  # of the Dynkin index: the sum of n (n^2 - 1) / 6 over the n of a partition of 2^qubits
-    return [t for t in types if len(types) == 1 or 0 < 2 * DUAL_COXETER[t[0]](rank) * ratio % p <= most]
+    numbers = {t: a * rank + b for t in types for a, b in [DUAL_COXETER[t[0]]]}
+    return [t for t in types if 0 < 2 * numbers[t] * ratio % p <= most]
 
 
 class _Reduction:
