@@ -4,7 +4,7 @@
 
 Both get the same Hamiltonians as single Pauli words: liehom as strings, PennyLane as its own `PauliWord` objects, which
 are made outside of the timed part. Times are processor time, the smallest of several runs. PennyLane belongs to the
-dependency group `bench`; without it its column is empty.
+dependency group `bench`; without it its column is empty. A second table has sums of words, for liehom alone.
 """
 
 import time
@@ -17,6 +17,27 @@ import liehom as lh
 RUNS = 3
 MODELS = {"TFIM": lh.pauli.ising, "XY": lh.pauli.xy, "Heisenberg": lh.pauli.heisenberg}
 SITES = range(2, 7)
+
+
+def neighbours(word: str, n: int) -> str:
+    return " + ".join("I" * i + word + "I" * (n - len(word) - i) for i in range(n - len(word) + 1))
+
+
+def controls(n: int, field: str, coupling: str = "") -> list[str]:
+    return [neighbours("ZZ", n) + coupling, neighbours("X", n), field]
+
+
+def graded(n: int) -> str:
+    return " + ".join(f"{i + 1}*Z({i})" for i in range(n))
+
+
+SUMS = {
+    "graded field, 4 qubits": controls(4, graded(4)),
+    "graded field, next neighbours / 64, 4 qubits": controls(4, graded(4), " + 1/64*ZIZI + 1/64*IZIZ"),
+    "uniform field, 4 qubits": controls(4, neighbours("Z", 4)),
+    "graded field, 5 qubits": controls(5, graded(5)),
+    "uniform field, 5 qubits": controls(5, neighbours("Z", 5)),
+}
 
 
 def seconds(action: Callable[[], Any]) -> tuple[float, Any]:
@@ -57,6 +78,16 @@ def main() -> None:
     for name, sites, dimension, here, there in rows():
         other, ratio = ("", "") if there is None else (f"{1000 * there:.2f}", f"{there / here:.0f}")
         print(f"| {name} | {sites} | {dimension} | {1000 * here:.2f} | {other} | {ratio} |")
+    print("\n| sums | words | dimension | closure, s | summary, s |")
+    print("|---|---|---|---|---|")
+    for name, sums in SUMS.items():
+        made = lh.pauli.closure(sums)
+        begin = time.process_time()
+        dimension = made.dimension
+        middle = time.process_time()
+        made.describe()
+        end = time.process_time()
+        print(f"| {name} | {len(made.words)} | {dimension} | {middle - begin:.1f} | {end - middle:.1f} |")
 
 
 if __name__ == "__main__":

@@ -14,7 +14,11 @@ from liehom.base.errors import InputError
 from liehom.base.objects import Displayed
 from liehom.exact.algebra.core.lie_algebra import LieAlgebra
 from liehom.exact.algebra.core.subalgebra import Subalgebra
-from liehom.exact.algebra.roots.real_form import canonical_real_form, join_real_forms
+from liehom.exact.algebra.roots.real_form import canonical_real_form, join_real_forms, real_forms
+from liehom.exact.algebra.roots.root_system import join_types
+from liehom.exact.algebra.structure.identification import lines_of_forms
+from liehom.exact.pauli.simple_ideals import simple_types
+from liehom.exact.pauli.span import LiftedRows, WordSpan
 from liehom.exact.pauli.words import (
     Hamiltonian,
     PauliSums,
@@ -215,8 +219,6 @@ class DynamicalLieAlgebra(Displayed):
         The Hamiltonians that were given.
     words : tuple of str
         The words that occur in the algebra, qubit 0 first.
-    spanned_by_words : bool
-        Whether i times each of these words is in the algebra.
 
     Examples
     --------
@@ -234,12 +236,22 @@ class DynamicalLieAlgebra(Displayed):
         self.qubits: int = sums.qubits
         self.sums: PauliSums = sums
         self._integers: tuple[int, ...] = tuple(words)
-        self.spanned_by_words: bool = all(len(terms) == 1 for terms in sums.terms)
+        self._are_words: bool = all(len(terms) == 1 for terms in sums.terms)
 
     @cached_property
     def words(self) -> tuple[str, ...]:
         """The words that occur in the algebra, a tuple of str."""
         return tuple(spell(word, self.qubits) for word in self._integers)
+
+    @cached_property
+    def _rows(self) -> LiftedRows | None:
+        """The reduced echelon basis in coordinates on the words, or None if the words themselves are a basis."""
+        return None if self._are_words else WordSpan(self.sums, self._integers).basis()
+
+    @property
+    def spanned_by_words(self) -> bool:
+        """Whether i times each word in `words` is in the algebra."""
+        return self._rows is None
 
     @cached_property
     def word_algebra(self) -> LieAlgebra:
@@ -256,9 +268,8 @@ class DynamicalLieAlgebra(Displayed):
     def subalgebra(self) -> Subalgebra:
         """The algebra as a subalgebra of `word_algebra`; its rows are coefficients of words."""
         algebra = self.word_algebra
-        if self.spanned_by_words:
-            return Subalgebra(algebra, algebra.field.identity(algebra.dimension), check=False)
-        return algebra.subalgebra_generated_by([self._row(terms) for terms in self.sums.terms])
+        rows = algebra.field.identity(algebra.dimension) if self._rows is None else self._rows.matrix()
+        return Subalgebra(algebra, rows, check=False)
 
     @cached_property
     def algebra(self) -> LieAlgebra:
@@ -268,14 +279,14 @@ class DynamicalLieAlgebra(Displayed):
     @property
     def dimension(self) -> int:
         """Dimension over the reals, an int."""
-        return len(self._integers) if self.spanned_by_words else self.subalgebra.dimension
+        return len(self._integers) if self._rows is None else len(self._rows.pivots)
 
     @cached_property
     def ideals(self) -> tuple[WordIdeal, ...]:
-        """The ideals that connected sets of words generate, for generators that are single words."""
+        """The ideals that connected sets of words generate, if words span the algebra."""
         if not self.spanned_by_words:
-            raise InputError("a Hamiltonian has several terms; use algebra.simple_ideals() for its ideals")
-        return tuple(word_ideals([next(iter(terms)) for terms in self.sums.terms], self.qubits))
+            raise InputError("words do not span the algebra; use algebra.simple_ideals() for its ideals")
+        return tuple(word_ideals([word for terms in self.sums.terms for word in terms], self.qubits))
 
     @cached_property
     def name(self) -> str | None:
@@ -291,7 +302,7 @@ class DynamicalLieAlgebra(Displayed):
     def describe(self) -> str:
         """Dimension, name and ideals as lines of text.
 
-        Words are identified by linear algebra over F_2, sums of words by `LieAlgebra.describe`.
+        Words are identified by linear algebra over F_2. Other algebras have the lines of `LieAlgebra.describe`.
 
         Examples
         --------
@@ -306,14 +317,34 @@ class DynamicalLieAlgebra(Displayed):
         """
         on = f"{self.qubits} qubit{'s' if self.qubits > 1 else ''}"
         title = f"dynamical Lie algebra of dimension {self.dimension} on {on}"
-        if not self.spanned_by_words or self.name is None:
-            return "\n".join([title, *self.algebra.describe().splitlines()[1:]])
+        if self.name is None:
+            lines = self._structure() or [line.strip() for line in self.algebra.describe().splitlines()[1:]]
+            return "\n  ".join([title, *lines])
         lines = [title, f"  {self.name}"]
         for ideal in self.ideals:
             count = f"{ideal.copies} {ideal.kind}" if ideal.copies > 1 else ideal.kind
             number = len(ideal.words)
             lines.append(f"  {count}, spanned by {number} Pauli word{'s' if number > 1 else ''}")
         return "\n".join(lines)
+
+    def _structure(self) -> list[str]:
+        """The lines of `LieAlgebra.describe` without a table: the algebra is compact. None if a type remains open."""
+        span = WordSpan(self.sums, self._integers)
+        basis = span.basis(derived=True)
+        d, derived = self.dimension, span.size if basis is None else len(basis.pivots)
+        types = simple_types(span, basis) if derived else []
+        if types is None:
+            return []
+        sizes = f"nilradical of dimension {d - derived}, centre of dimension {d - derived}"
+        series = f"derived series {d} > {derived}, lower central series {d} > {derived}"
+        form = f"Killing form of signature (0, {derived}, {d - derived}) (positive, negative, zero)"
+        if not derived:
+            return ["abelian", sizes, series, form]
+        lines = lines_of_forms(join_types(types), [real_forms(t)[-1] for t in types])  # the compact ones
+        if derived == d:
+            return [*lines, form]
+        parts = f"reductive: Levi factor of dimension {derived}, radical of dimension {d - derived}"
+        return [parts, f"Levi factor: {lines[0]}", sizes, series, form]
 
     def representation(self) -> Representation:
         """The representation on C^N, N = 2 to the number of qubits: basis elements as N x N skew-Hermitian matrices.
@@ -366,7 +397,7 @@ class DynamicalLieAlgebra(Displayed):
         return row
 
     def __repr__(self) -> str:
-        name = f" {self.name}" if self.spanned_by_words and self.name else ""
+        name = f" {self.name}" if self._are_words and self.name else ""
         return f"<dynamical Lie algebra{name} of {len(self.sums.terms)} Hamiltonians on {self.qubits} qubits>"
 
 
@@ -393,7 +424,8 @@ def closure(hamiltonians: Iterable[Hamiltonian], *, qubits: int | None = None) -
     Notes
     -----
     Words are bit vectors, and commutators of words are computed over F_2. The closure of single words needs no linear
-    algebra. For sums, the words that occur span a larger Lie algebra, in which the subalgebra is computed exactly.
+    algebra. For sums, the words that occur may span a larger Lie algebra. The subalgebra is computed modulo primes and
+    lifted when it is first asked for, and its dimension is proved. The limit `seconds` of `liehom.limits` ends this.
 
     Examples
     --------

@@ -264,20 +264,28 @@ def word_table(words: Sequence[int], qubits: int) -> StructureConstants:
     return StructureConstants.from_integers(QQ, len(words), first, second, third, (2 * signs).tolist())
 
 
-def products(words: Sequence[int], qubits: int) -> tuple[IntegerArray, IntegerArray, IntegerArray, IntegerArray]:
+def products(
+    words: Sequence[int], qubits: int, chosen: Sequence[int] | None = None
+) -> tuple[IntegerArray, IntegerArray, IntegerArray, IntegerArray]:
     """Indices a < b of anticommuting words of a closed list, the index c of their product, and s in
-    [iP_a, iP_b] = 2 s iP_c."""
+    [iP_a, iP_b] = 2 s iP_c. With `chosen`, a is one of these and b any index."""
     x, z = bits(words, qubits)
-    left, right = z @ x.T, x @ z.T
-    first, second = np.nonzero(np.triu((left + right) & 1, 1))
-    within("entries", len(first), "the bracket table has {} entries")
-    position = {word: i for i, word in enumerate(words)}
-    third = np.array(
-        [position[words[a] ^ words[b]] for a, b in zip(first.tolist(), second.tolist(), strict=True)], dtype=np.int64
-    )
     ys = (x & z).sum(axis=1)
-    # P_a P_b = i^p P_c with an odd p, s = p mod 4 - 2, and [iP_a, iP_b] = -2 P_a P_b
-    return first, second, third, (ys[first] + ys[second] - ys[third] + 2 * left[first, second]) % 4 - 2
+    position = {word: i for i, word in enumerate(words)}
+    rows: list[IntegerArray] = []
+    entries = 0
+    for a in range(len(words)) if chosen is None else chosen:
+        in_time()
+        left = x @ z[a]
+        b = np.flatnonzero((left + z @ x[a]) & 1)
+        b = b if chosen is not None else b[b > a]
+        entries += len(b)
+        within("entries", entries, "the bracket table has {} entries")
+        c = np.array([position[words[a] ^ words[i]] for i in b.tolist()], dtype=np.int64)
+        # P_a P_b = i^p P_c with an odd p, s = p mod 4 - 2, and [iP_a, iP_b] = -2 P_a P_b
+        rows.append(np.array([np.full(len(b), a), b, c, (ys[a] + ys[b] - ys[c] + 2 * left[b]) % 4 - 2]))
+    first, second, third, signs = np.concatenate(rows, axis=1)
+    return first, second, third, signs
 
 
 def bits(words: Sequence[int], qubits: int) -> tuple[IntegerArray, IntegerArray]:

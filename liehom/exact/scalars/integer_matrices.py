@@ -14,6 +14,7 @@ from liehom.base.budget import in_time, within
 LARGE_SIZE = 60  # from which characteristic polynomials are computed prime by prime
 LONG_BITS, SAMPLED_ENTRIES = 2000, 400
 LONG_ENTRIES = 4000  # bits of an entry from which the size of minors is estimated
+UNINTERRUPTED = "one call of flint that the limit `seconds` does not end, may need {} bytes"
 MAX_DIRECT_ENTRIES = 64  # whose gcd is taken one by one
 
 
@@ -139,7 +140,7 @@ def require_small_answer(matrix: flint.fmpz_mat, degree: int) -> None:
     bits = max((int(matrix[divmod(x, ncols)].bit_length()) for x in places), default=0)
     if bits > LONG_BITS:
         rank = degree * min(nrows, ncols)
-        what = f"the echelon form of a matrix ({nrows}, {ncols}) of numbers of {bits} bits may need {{}} bytes"
+        what = f"the echelon form of a matrix ({nrows}, {ncols}) of numbers of {bits} bits, {UNINTERRUPTED}"
         within("memory", rank * degree * ncols * rank * bits // 8, what)
 
 
@@ -182,7 +183,7 @@ def bounded_echelon(matrix: flint.fmpz_mat) -> tuple[flint.fmpz_mat, flint.fmpz,
     rank, columns = matrix.nrows(), matrix.ncols()
     bits = max((int(abs(x)).bit_length() for x in matrix.entries()), default=0)
     if bits > LONG_ENTRIES:
-        what = f"the minors of a {rank} x {columns} matrix may need {{}} bytes"
+        what = f"the echelon form of a {rank} x {columns} matrix, {UNINTERRUPTED}"
         within("memory", 2 * rank * columns * rank * bits // 8, what)
     reduced, den, rank = matrix.rref()  # one call of flint, which cannot be interrupted
     return reduced, den, int(rank)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import random
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from math import isqrt
-from typing import final
+from typing import TYPE_CHECKING, TypeAlias, final
 
 import flint
 import numpy as np
@@ -16,7 +16,10 @@ from liehom.base.typing import Array, IntegerArray
 from liehom.exact.scalars.exact_field import ExactField, ExactMatrix
 from liehom.exact.scalars.field import Field
 from liehom.exact.scalars.integer_matrices import echelon_pivots
-from liehom.exact.scalars.polynomial import horner, linear_root
+from liehom.exact.scalars.polynomial import horner, linear_root, linear_roots
+
+if TYPE_CHECKING:
+    from scipy import sparse
 
 # A rank modulo a prime (by a residue map of the field onto F_p) is at most the true rank, so a bound that is reached
 # modulo p is reached. If it is not reached, numbers of the input may be multiples of p, and the exact rank decides.
@@ -52,6 +55,14 @@ def small_residues(field: ExactField, bound: int) -> Iterator[tuple[int, int]]:
         if root is not None:
             yield p, root
             remaining //= p
+
+
+def splitting_primes(field: ExactField) -> Iterator[tuple[int, list[int]]]:
+    """The primes p < 2^22 modulo which the minimal polynomial splits, from the largest on, with all its roots."""
+    modulus = field.modulus_coefficients()
+    for p in range((1 << 22) - 1, 0, -2):
+        if flint.fmpz(p).is_prime() and len(set(roots := linear_roots(modulus, p))) == field.degree:
+            yield p, roots
 
 
 def norm_bound(modulus: Sequence[int], bound: int) -> int:
@@ -137,8 +148,13 @@ def extending_rows(known: Sequence[flint.nmod_mat], candidates: Sequence[flint.n
 # sqrt(p / 2), and several primes together give larger ones (Wang). A lift is a proposal that the caller verifies.
 
 MAX_PRIMES = 12  # combined for one lift
+LIFTED_AT_ONCE = 1 << 18
 MAX_TERMS = 512  # products of residues below 2^22 in one sum, so that it stays below 2^53
+CACHED = 1 << 14  # numbers that are reduced at once, so that they stay in the cache
+ROWS_AT_ONCE = 128  # that extend a span: those that depend on it vanish by one product, without elimination
+ROWS_ELIMINATED = 16  # at most, one by one
 Residues = Array
+ResidueMap: TypeAlias = "Residues | sparse.csr_array"
 
 
 @final
@@ -160,29 +176,32 @@ class ModularSpan:
         """Dimension, an int."""
         return len(self.pivots)
 
-    def extend(self, rows: npt.ArrayLike) -> list[int]:
+    def extend(self, rows: npt.ArrayLike, at_once: int = ROWS_AT_ONCE) -> list[int]:
         """Add rows; return the list of indices of the rows that are independent of all earlier rows."""
+        table = np.asarray(rows, dtype=np.float64).reshape(-1, self.ncols)
+        kept: list[int] = []
+        for start in range(0, len(table), at_once):
+            in_time()
+            if self.rank == self.ncols:
+                break
+            kept += [start + i for i in self._extend(table[start : start + at_once])]
+        return kept
+
+    def _extend(self, rows: Residues) -> list[int]:
         p = self.modulus
-        rest = remainders(np.array(rows, dtype=np.float64).reshape(-1, self.ncols), p)
+        rest = remainders(rows, p)
         if self.rank:
             rest = remainders(rest - product(rest[:, self.pivots], self.rows, p), p)
-        kept: list[int] = []
-        pivots: list[int] = []
-        for i in np.flatnonzero(rest.any(axis=1)).tolist():
-            if self.rank + len(kept) == self.ncols:
-                break
-            pivot = int((rest[i] != 0).argmax())
-            if not rest[i, pivot]:
-                continue
-            rest[i] = remainders(rest[i] * pow(int(rest[i, pivot]), -1, p), p)
-            others = np.flatnonzero(rest[:, pivot])
-            others = others[others != i]
-            rest[others] = remainders(rest[others] - rest[others, pivot, None] * rest[i], p)
-            kept.append(i)
-            pivots.append(pivot)
-        if kept:
+        if len(rest) > ROWS_ELIMINATED:
+            inner = ModularSpan(p, self.ncols)
+            kept = inner.extend(rest, ROWS_ELIMINATED)
+            new, pivots = inner.rows, inner.pivots
+        else:
+            kept, pivots = _eliminated(rest, p, self.ncols - self.rank)
             new = rest[kept]
-            old = remainders(self.rows - product(self.rows[:, pivots], new, p), p) if self.rank else self.rows
+        if kept:
+            # sums of at most `ROWS_AT_ONCE` products
+            old = remainders(self.rows - self.rows[:, pivots] @ new, p) if self.rank else self.rows
             self.rows = np.concatenate([old, new])
             self.pivots += pivots
         return kept
@@ -192,15 +211,36 @@ class ModularSpan:
         return self.rows[np.argsort(self.pivots)].astype(np.int64), sorted(self.pivots)
 
 
-def invariant_span(maps: npt.ArrayLike, rows: npt.ArrayLike, modulus: int) -> ModularSpan:
-    """The smallest space of rows modulo a prime below 2^22 that contains the given rows and is invariant under maps."""
-    frontier, matrices = np.asarray(rows, dtype=np.float64), np.asarray(maps, dtype=np.float64)
-    n = frontier.shape[1]
-    span = ModularSpan(modulus, n)
+def _eliminated(rest: Residues, p: int, most: int) -> tuple[list[int], list[int]]:
+    """Gauss-Jordan elimination in place; up to `most` independent rows, and their pivots."""
+    kept: list[int] = []
+    pivots: list[int] = []
+    for i in np.flatnonzero(rest.any(axis=1)).tolist():
+        if len(kept) == most:
+            break
+        pivot = int((rest[i] != 0).argmax())
+        if not rest[i, pivot]:
+            continue
+        rest[i] = remainders(rest[i] * pow(int(rest[i, pivot]), -1, p), p)
+        others = np.flatnonzero(rest[:, pivot])
+        others = others[others != i]
+        rest[others] = remainders(rest[others] - rest[others, pivot, None] * rest[i], p)
+        kept.append(i)
+        pivots.append(pivot)
+    return kept, pivots
+
+
+def invariant_span(maps: Sequence[ResidueMap], rows: npt.ArrayLike, modulus: int) -> ModularSpan:
+    """The smallest space of rows modulo a prime below 2^22 that contains the given rows and is invariant under maps.
+
+    A map is a matrix (n, n) of residues, an array or a sparse array; an array (k, n, n) stands for k maps.
+    """
+    frontier = np.asarray(rows, dtype=np.float64)
+    span = ModularSpan(modulus, frontier.shape[1])
     frontier = frontier[span.extend(frontier)]
-    while len(frontier) and span.rank < n:
-        images = product(frontier, matrices, modulus).reshape(-1, n)
-        frontier = images[span.extend(images)]
+    while len(frontier) and span.rank < span.ncols:
+        images = (product(frontier, matrix, modulus).reshape(-1, span.ncols) for matrix in maps)
+        frontier = np.concatenate([image[span.extend(image)] for image in images])
     return span
 
 
@@ -225,16 +265,37 @@ def remainders(values: Residues, modulus: int) -> Residues:
     Where x = k p + r, 0 <= r < p, the quotient x/p is at most k + 1 - 1/p. Rounding cannot lift it to k + 1, because
     1/p exceeds half the spacing (k + 1) / 2^52 of floats there: (k + 1) p <= x + p < 2^53. So the floor is k.
     """
-    return values - modulus * np.floor(values / modulus)
+    result: Residues = np.empty(values.shape)
+    source, target = values.reshape(-1), result.reshape(-1)
+    for start in range(0, source.size, CACHED):
+        x, y = source[start : start + CACHED], target[start : start + CACHED]
+        np.floor(np.divide(x, modulus, out=y), out=y)
+        np.subtract(x, np.multiply(y, modulus, out=y), out=y)
+    return result
 
 
-def product(left: Residues, right: Residues, modulus: int) -> Residues:
-    """The matrix product modulo a prime below 2^22, exactly: sums of at most 512 terms at a time."""
+def product(left: Residues, right: ResidueMap, modulus: int) -> Residues:
+    """The product by an array or a sparse array modulo a prime below 2^22, exactly: sums of at most 512 terms each."""
     total: Residues = remainders(left[..., :MAX_TERMS] @ right[..., :MAX_TERMS, :], modulus)
     for start in range(MAX_TERMS, left.shape[-1], MAX_TERMS):
+        in_time()
         end = start + MAX_TERMS
         total = remainders(total + left[..., start:end] @ right[..., start:end, :], modulus)
     return total
+
+
+def eigenvalues(first: Residues, second: Residues, modulus: int) -> list[int]:
+    """The c in F_p with det(A - c B) = 0, for an invertible B."""
+    n = len(first)
+    a, b = (residue_matrix(n, n, m.astype(np.int64).ravel().tolist(), modulus) for m in (first, second))
+    return linear_roots([int(c) for c in (a * b.inv()).charpoly().coeffs()], modulus)
+
+
+def interpolated(values: Residues, points: Sequence[int], modulus: int) -> Residues:
+    """The coefficients (m, n), ascending, of n polynomials with given values (m, n) at m points modulo a prime."""
+    m = len(points)
+    powers = residue_matrix(m, m, (pow(x, s, modulus) for x in points for s in range(m)), modulus).inv()
+    return product(np.array([int(x) for x in powers.entries()], dtype=np.float64).reshape(m, m), values, modulus)
 
 
 def residue_map(field: ExactField) -> tuple[int, int]:
@@ -261,22 +322,41 @@ def flat_echelon(matrices: Sequence[flint.nmod_mat]) -> flint.nmod_mat:
 
 def rational_lifts(make: Callable[[int], flint.nmod_mat | None], field: Field) -> Iterator[ExactMatrix]:
     """Proposals, possibly wrong, for a matrix over QQ that is known modulo primes: from one prime, from two, ..."""
-    first = make(0)
-    if first is None:
-        return
-    shape, modulus = (first.nrows(), first.ncols()), int(first.modulus())
-    values = [int(x) for x in first.entries()]
-    for attempt in range(1, MAX_PRIMES):
-        lifted = _lifted(values, modulus)
-        if lifted is not None:
-            yield field.from_entries(lifted, *shape)
-        further = make(attempt)
-        if further is None or (further.nrows(), further.ncols()) != shape:
+    shape, lift = (0, 0), RationalLift()
+    for attempt in range(MAX_PRIMES):
+        image = make(attempt)
+        if image is None or (attempt and (image.nrows(), image.ncols()) != shape):
             return
-        p = int(further.modulus())
-        inverse, pairs = pow(modulus, -1, p), zip(values, further.entries(), strict=True)
-        values = [v + modulus * ((int(r) - v) * inverse % p) for v, r in pairs]
-        modulus *= p
+        shape = (image.nrows(), image.ncols())
+        lift.add([int(x) for x in image.entries()], int(image.modulus()))
+        if (distinct := lift.fractions()) is not None:
+            yield field.from_entries([distinct[i] for i in lift.index], *shape)
+
+
+@final
+class RationalLift:
+    """Rational numbers that are known modulo more and more primes; number i is the distinct one `index[i]`."""
+
+    def __init__(self) -> None:
+        self.modulus = 1
+        self.index: list[int] = []
+        self._values = [0]  # the distinct numbers modulo the modulus
+
+    def add(self, residues: Sequence[int], p: int) -> None:
+        """The residues of the same numbers modulo another prime."""
+        known, index = self.index or [0] * len(residues), list[int]()
+        classes: dict[tuple[int, int], int] = {}
+        for start in range(0, len(residues), LIFTED_AT_ONCE):
+            in_time()
+            part = slice(start, start + LIFTED_AT_ONCE)
+            index += [classes.setdefault(key, len(classes)) for key in zip(known[part], residues[part], strict=True)]
+        inverse, m = pow(self.modulus, -1, p), self.modulus
+        self._values = [(v := self._values[i]) + m * ((r - v) * inverse % p) for i, r in classes]
+        self.index, self.modulus = index, m * p
+
+    def fractions(self) -> list[flint.fmpq] | None:
+        """The distinct numbers, with numerators and denominators below sqrt(modulus / 2), or None if one has none."""
+        return _lifted(self._values, self.modulus)
 
 
 def lifted(values: Residues, modulus: int, field: Field) -> ExactMatrix | None:

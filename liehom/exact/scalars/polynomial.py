@@ -36,8 +36,13 @@ def horner(coefficients: Sequence[object], at: object, zero: T) -> T:
 
 def linear_root(coefficients: Sequence[int], p: int) -> int | None:
     """A root modulo a prime of a polynomial with ascending integer coefficients, or None if it has none."""
+    return next(iter(linear_roots(coefficients, p)), None)
+
+
+def linear_roots(coefficients: Sequence[int], p: int) -> list[int]:
+    """The distinct roots modulo a prime of a polynomial with ascending integer coefficients."""
     factors = flint.nmod_poly([c % p for c in coefficients], p).factor()[1]
-    return next((-int(f[0]) * pow(int(f[1]), -1, p) % p for f, _ in factors if f.degree() == 1), None)
+    return [-int(f[0]) * pow(int(f[1]), -1, p) % p for f, _ in factors if f.degree() == 1]
 
 
 def integral_generator(field: ExactField) -> Scalar:

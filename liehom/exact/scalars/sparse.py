@@ -9,6 +9,7 @@ import flint
 import numpy as np
 import numpy.typing as npt
 
+from liehom.base.budget import in_time
 from liehom.base.typing import IntegerArray, ObjectArray
 from liehom.exact.scalars.exact_field import ExactField, ExactMatrix
 
@@ -48,6 +49,7 @@ class SparseInteger:
         return cls(index // n, index % n, list(entries.values()), matrix.shape, matrix.den)
 
     def __matmul__(self, other: SparseInteger) -> SparseInteger:
+        in_time()
         shape = (self.shape[0], other.shape[1])
         den = self.den * other.den
         if not len(self.values) or not len(other.values):
@@ -76,6 +78,7 @@ class SparseInteger:
             right.setdefault(r, []).append((c, v))
         total: dict[tuple[int, int], int] = {}
         for r, c, v in zip(self.rows.tolist(), self.columns.tolist(), self.values.tolist(), strict=True):
+            in_time()
             for column, w in right.get(c, ()):
                 total[r, column] = total.get((r, column), 0) + v * w
         places, values = [x for x, v in total.items() if v], [v for v in total.values() if v]

@@ -7,13 +7,17 @@ from typing import Any
 import flint
 import numpy as np
 import pytest
+from scipy import sparse
 
 from liehom.exact.scalars import modular as modular_maps, modular as modular_span
 from liehom.exact.scalars.modular import (
+    ROWS_AT_ONCE,
     ModularSpan,
+    eigenvalues,
     extending_rows,
     independent_columns,
     independent_rows,
+    interpolated,
     invariant_hull_rank,
     invariant_span,
     left_kernel,
@@ -26,6 +30,7 @@ from liehom.exact.scalars.modular import (
     residue_map,
     residues,
     small_residues,
+    splitting_primes,
 )
 from liehom.exact.scalars.number_fields import NumberField
 from liehom.exact.scalars.rational import QQ
@@ -186,3 +191,48 @@ def test_rows_are_made_primitive_before_they_are_reduced() -> None:
     assert [int(x) for x in image.entries()] == [1, 2, 1, 2, 0, 0]
     assert extending_rows([primitive_residues(rows[:1], 2)], [image]) == []
     assert extending_rows([], [image, flint.nmod_mat(1, 2, [0, 3], image.modulus())]) == [0, 3]
+
+
+def test_many_rows_extend_a_span_as_they_do_one_by_one() -> None:
+    p, rng = 4194301, np.random.default_rng(5)
+    rows = rng.integers(0, p, (40, 60)).astype(float)
+    rows = product(rng.integers(-1, 2, (3 * ROWS_AT_ONCE, 40)) % p * (rng.random((3 * ROWS_AT_ONCE, 1)) < 0.3), rows, p)
+    together, single = ModularSpan(p, 60), ModularSpan(p, 60)
+    kept = together.extend(rows)
+    assert kept == [i for i, row in enumerate(rows) if single.extend(row)] and len(kept) == 40
+    assert all(np.array_equal(a, b) for a, b in zip(together.echelon(), single.echelon(), strict=True))
+
+
+def test_sparse_maps_and_stacks_of_maps_span_the_same_as_single_arrays() -> None:
+    p, rng = 4194301, np.random.default_rng(6)
+    maps = [rng.integers(0, 3, (700, 700)) * (rng.random((700, 700)) < 0.003) for _ in range(2)]
+    maps = [m.astype(float) for m in maps]
+    start = np.eye(700)[:1]
+    spans = [
+        invariant_span(given, start, p).echelon()
+        for given in (maps, [sparse.csr_array(m) for m in maps], [np.array(maps)])
+    ]
+    assert len(spans[0][1]) > 0 and all(pivots == spans[0][1] for _, pivots in spans)
+    assert all(np.array_equal(rows, spans[0][0]) for rows, _ in spans)
+
+
+def test_splitting_primes_have_all_roots() -> None:
+    for field, degree in ((QQ, 1), (ROOT2, 2), (CUBIC, 3)):
+        modulus = field.modulus_coefficients()
+        for _, (p, roots) in zip(range(4), splitting_primes(field), strict=False):
+            assert flint.fmpz(p).is_prime() and p < 1 << 22 and len(set(roots)) == degree
+            assert all(sum(c * r**s for s, c in enumerate(modulus)) % p == 0 for r in roots)
+
+
+def test_interpolated_coefficients_have_the_given_values() -> None:
+    p, points = 101, [3, 50, 99]
+    values = np.array([[1.0, 2, 0], [7, 100, 0], [55, 3, 1]])
+    coefficients = interpolated(values, points, p)
+    at_points = [[sum(int(c) * x**s for s, c in enumerate(column)) % p for column in coefficients.T] for x in points]
+    assert at_points == values.tolist()
+
+
+def test_eigenvalues_are_those_in_the_prime_field() -> None:
+    change, p = np.array([[1.0, 2, 3], [0, 1, 4], [0, 0, 5]]), 103
+    assert sorted(eigenvalues(product(np.diag([7.0, 7, 9]), change, p), change, p)) == [7, 9]
+    assert eigenvalues(np.array([[0.0, 1], [102, 0]]), np.eye(2), p) == []  # -1 is not a square modulo 103

@@ -60,7 +60,7 @@ def ideals_modulo(constants: IntegerArray, p: int, tries: int, limit: int) -> li
                 if not len(rows):
                     continue
                 vector = rng.integers(0, p, len(rows)) @ rows % p
-                space = invariant_span(module, vector[None, :], p).echelon()[0]
+                space = invariant_span([module.astype(np.float64)], vector[None, :], p).echelon()[0]
                 if module is dual and len(space):
                     space = _annihilator(space, p)
                 if 0 < len(space) < n:

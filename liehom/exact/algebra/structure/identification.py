@@ -101,13 +101,13 @@ def _type(centroid: CentroidField) -> str:
     """The type of the simple ideals of the complexification of a simple algebra."""
     algebra, degree = centroid.algebra, centroid.degree
     cartan = cartan_subalgebra(algebra)
-    candidates = _types(algebra.dimension // degree, cartan.dimension // degree)
+    candidates = types_of(algebra.dimension // degree, cartan.dimension // degree)
     if len(candidates) == 1:
         return candidates[0]
     return root_data(algebra, cartan).root_system.components()[0][0]
 
 
-def _types(dimension: int, rank: int) -> list[str]:
+def types_of(dimension: int, rank: int) -> list[str]:
     """The simple types of a dimension and a rank."""
     exceptional = {(14, 2): "G2", (52, 4): "F4", (78, 6): "E6", (133, 7): "E7", (248, 8): "E8"}
     least = {"A": (rank * (rank + 2), 1), "B": (rank * (2 * rank + 1), 2)}
@@ -160,7 +160,12 @@ def semisimple_lines(algebra: LieAlgebra) -> list[str]:
         forms = [form for part in parts for form in part.real_forms()]
     except UndecidedError as undecided:
         return [f"semisimple of complex type {kind}; {undecided}"]
-    forms.sort(key=lambda form: (form.dimension, form.real_rank > 0, form.name))  # the order of join_real_forms
+    return lines_of_forms(kind, forms)
+
+
+def lines_of_forms(kind: str, forms: list[RealForm]) -> list[str]:
+    """The lines of the summary for the sum of simple algebras of a complex type: name and ranks, restricted roots."""
+    forms = sorted(forms, key=lambda form: (form.dimension, form.real_rank > 0, form.name))  # as join_real_forms
     rank = sum(form.rank for form in forms)
     real_rank = sum(form.real_rank for form in forms)
     compact = "+".join(form.maximal_compact for form in forms if form.maximal_compact != "0") or "0"
