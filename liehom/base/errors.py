@@ -6,12 +6,16 @@ elements, a key of a file), the exception carries it as an attribute.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     import numpy as np
     import numpy.typing as npt
+
+
+LARGEST_NOISE = 1e-2  # relative size up to which a failing identity may be due to inexact numbers
 
 
 class LiehomError(Exception):
@@ -122,12 +126,20 @@ class JacobiError(StructureError):
         value: dict[int, str],
         names: tuple[str, str, str],
         basis: Sequence[str] = (),
+        tolerance: float = 1.0,
     ) -> None:
         self.indices, self.value = indices, value
+        remedy = ""
+        if tolerance < LARGEST_NOISE:
+            power = math.ceil(math.log10(tolerance))
+            remedy = (
+                f"; the numbers satisfy the identity up to a relative error of {tolerance:.1e}: if they are that "
+                f"inexact, declare it by field=lh.FloatField(rtol=1e{power})"
+            )
         terms = " + ".join(f"({shown(v)})*{basis[k] if basis else f'e{k}'}" for k, v in sorted(value.items()))
         super().__init__(
             f"the Jacobi identity fails for (i, j, k) = {indices}, that is for {', '.join(names)}: "
-            f"[[i,j],k] + [[j,k],i] + [[k,i],j] = {terms}, expected 0"
+            f"[[i,j],k] + [[j,k],i] + [[k,i],j] = {terms}, expected 0{remedy}"
         )
 
 

@@ -193,24 +193,31 @@ PRODUCTS = 6.0  # the error of J is at most this many times the norm of the tabl
 Failure = tuple[tuple[int, int, int], dict[int, Scalar]]
 
 
-def failure_over_floats(table: StructureConstants) -> Failure | None:
-    """Indices (i, j, k) and the coefficients of a cyclic sum that is not zero, or None if the identity holds."""
-    norm = table.norm()
-    if norm == 0:
-        return None
+def failure_over_floats(table: StructureConstants) -> tuple[Failure, float] | None:
+    """None if the identity holds; else a cyclic sum that is not zero, and the `jacobi_tolerance` of the table."""
+    tolerance, worst, scaled, unit = _largest_defect(table)
+    return None if tolerance * table.norm() <= table.error else (scaled.located(*worst, unit), tolerance)
+
+
+def jacobi_tolerance(table: StructureConstants) -> float:
+    """The least error, relative to the norm of a table over floats, within which the Jacobi identity can hold."""
+    return _largest_defect(table)[0]
+
+
+def _largest_defect(table: StructureConstants) -> tuple[float, tuple[Array, Array], _Scaled, float]:
+    """`jacobi_tolerance`, two elements x and y with a large J(x, y), the scaled table and its unit."""
+    norm, n = table.norm(), table.dimension
     if not math.isfinite(norm):
         raise FieldError("the norm of the table leaves the range of float64; multiply it by a power of two, or use QQ")
     unit = 2.0 ** min(math.frexp(norm)[1], 1023)
     scaled = _Scaled(table, unit)
-    bound = PRODUCTS * (norm / unit) * (table.error / unit)
-    n = table.dimension
     squares, worst = 0.0, (0.0, np.zeros(n), np.zeros(n))
     for x, y in _pairs(n):
         size = norm_of(scaled.defect(x, y))
         squares += size * size
         worst = max(worst, (size, x, y), key=lambda defect: defect[0])
     mean = 2 * squares if n <= ALL_PAIRS else squares / RANDOM_PAIRS
-    return None if math.sqrt(mean) <= bound else scaled.located(worst[1], worst[2], unit)
+    return math.sqrt(mean) / (PRODUCTS * (norm / unit) ** 2) if norm else 0.0, worst[1:], scaled, unit
 
 
 def _pairs(n: int) -> Iterator[tuple[Array, Array]]:
@@ -289,7 +296,7 @@ def prove_jacobi(table: StructureConstants, names: tuple[str, ...]) -> None:
     if isinstance(table.field, FloatField):
         failure = failure_over_floats(table)
         if failure is not None:
-            _fail(table, *failure, names)
+            _fail(table, *failure[0], names, failure[1])
         return
     n, terms = table.dimension, table.jacobi_terms()
     over_rationals = len(table.parts) == 1
@@ -315,10 +322,12 @@ def _sparse_is_faster(terms: int, n: int) -> bool:
     return terms * SPARSE_PRODUCT < n**4 * DENSE_PRODUCT + n**3 * DENSE_SLICE
 
 
-def _fail(table: StructureConstants, triple: Triple, value: Coefficients, names: tuple[str, ...]) -> NoReturn:
+def _fail(
+    table: StructureConstants, triple: Triple, value: Coefficients, names: tuple[str, ...], tolerance: float = 1.0
+) -> NoReturn:
     i, j, k = triple
     shown = {m: table.field.show(v) for m, v in value.items()}
-    raise JacobiError(triple, shown, (names[i], names[j], names[k]), names)
+    raise JacobiError(triple, shown, (names[i], names[j], names[k]), names, tolerance)
 
 
 def _cyclic_sum(brackets: Brackets, i: int, j: int, k: int) -> Coefficients:
