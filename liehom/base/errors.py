@@ -15,9 +15,6 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
 
-LARGEST_NOISE = 1e-2  # relative size up to which a failing identity may be due to inexact numbers
-
-
 class LiehomError(Exception):
     """Root of all exceptions raised by liehom."""
 
@@ -129,17 +126,14 @@ class JacobiError(StructureError):
         tolerance: float = 1.0,
     ) -> None:
         self.indices, self.value = indices, value
-        remedy = ""
-        if tolerance < LARGEST_NOISE:
-            power = math.ceil(math.log10(tolerance))
-            remedy = (
-                f"; the numbers satisfy the identity up to a relative error of {tolerance:.1e}: if they are that "
-                f"inexact, declare it by field=lh.FloatField(rtol=1e{power})"
-            )
+        power = math.ceil(math.log10(tolerance))  # a failure as large as 1e-2 is not due to inexact numbers
+        remedy = (
+            f"; it holds up to a relative error of {tolerance:.1e}: declare it by field=lh.FloatField(rtol=1e{power})"
+        )
         terms = " + ".join(f"({shown(v)})*{basis[k] if basis else f'e{k}'}" for k, v in sorted(value.items()))
         super().__init__(
             f"the Jacobi identity fails for (i, j, k) = {indices}, that is for {', '.join(names)}: "
-            f"[[i,j],k] + [[j,k],i] + [[k,i],j] = {terms}, expected 0{remedy}"
+            f"[[i,j],k] + [[j,k],i] + [[k,i],j] = {terms}, expected 0{remedy if power < -1 else ''}"
         )
 
 

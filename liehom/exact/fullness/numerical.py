@@ -9,7 +9,7 @@ from typing import Any, TypeAlias, final
 import numpy as np
 
 from liehom.base.typing import Array
-from liehom.exact.algebra.core.jacobi import jacobi_tolerance
+from liehom.exact.algebra.core.jacobi import failure_over_floats
 from liehom.exact.algebra.core.lie_algebra import LieAlgebra
 from liehom.exact.algebra.core.structure_constants import StructureConstants
 from liehom.exact.algebra.core.subalgebra import Subalgebra
@@ -17,44 +17,54 @@ from liehom.exact.fullness.verdict import NumericallyFull, NumericallyNotFull, N
 from liehom.exact.representations.core.pair import Pair
 from liehom.exact.scalars.floating import RR, FloatField
 
-# Let z_i be an orthonormal basis of h as given, W its orthogonal complement, and T_i the traceless part of rho(z_i) in
-# coordinates on W. The structure constants c and the rows of h have errors, so the pair that is meant has other ones:
-# c' with |c' - c| <= e, and h' with the basis z_i + G z_i for a map G from h to W of norm at most y. (If the rows have
-# the error e_h and the smallest singular value s, then y = r / (1 - r) with r = e_h / s.) In this basis of h', and on
-# g/h' with the coordinates of W, the isotropy is T_i + E_i + L(G)_i up to multiples of 1, where
-#     L(G)_i w = [G z_i, w]_W - G [z_i, w]_h,   |(E_i w)_i| <= (1 + y^2) e / sqrt 2 + y^2 |[W, W]_h|   for a unit w;
-# sqrt 2 because c is antisymmetric, and brackets are those of c. The same holds for |E_i| of one unit element z_i, and
-# for the matrices of ad on h', with [G z_i, z_j]_h + [z_i, G z_j]_h in place of L(G). Nothing is left out.
-#
-# As h' is closed, and conjugation changes no answer, G is smaller in most directions. Among the limits of conjugates of
-# h' under inner automorphisms of c' take the one with the least |G|. A pair is full, or dominated, if a limit is. There
-#     D(G)(i, j) = [G z_i, z_j]_W + [z_i, G z_j]_W - G [z_i, z_j]_h   is at most
-#     a = |[h, h]_W| + (1 + y^2)^(3/2) e + y^2 (|[W, .]_W| + 2 |[W, h]_h| + y |[W, W]_h|)
-# since h' is closed, and the sum of <G z_i, rho(z_i) w> is at most b = y |error of all T_i| for a unit w, since
-# conjugation by exp(t ad w) does not decrease |G|. So |D(G)|^2 / a^2 + |D_0(G)|^2 / b^2 + |G|^2 / y^2 <= 3.
+# Bounds of the isotropy of all pairs within the error of the data, proved in section 9 of docs/theory/fullness.md. The
+# z_i are an orthonormal basis of h as given, and W is its orthogonal complement. The subalgebra that is meant has the
+# basis z_i + G z_i with a map G from h to W, |G| <= y. In this basis, and with the coordinates of W on g/h, rho and ad
+# change by linear functions of G and by at most e. G has three bounds, since h is closed and may be conjugated.
 
-MAX_MOVES = 3 * 10**6
-"""Numbers in the array of D(G) up to which the conditions on G are used."""
+MAX_MOVES = 3 * 10**6  # numbers in the array of closure conditions up to which they are used
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Enclosure:
+    """Stacks of matrices `center` + E + sum_s y_s `moves[s]` with |y| <= 1.
+
+    The E_i x together, for one unit vector x, and the combinations of the E_i by one unit vector, are at most `error`.
+    """
+
+    center: Array  # (k, d, d)
+    error: float
+    moves: Array  # (s, k, d, d)
+
+    def element(self, x: Array, factor: complex) -> Enclosure:
+        """The combination of the matrices by a unit vector x, times a factor of modulus 1."""
+        center, moves = np.tensordot(x, self.center, 1), np.tensordot(x, self.moves, (0, 1))
+        return Enclosure(factor * center, self.error, factor * moves)
+
+    def span(self) -> tuple[Array, int]:
+        """Left singular vectors (k, k) of the flat matrices, and the number of singular values above all errors."""
+        k, square = len(self.center), self.center[0].size
+        left, values, _ = np.linalg.svd(self.center.reshape(k, square), full_matrices=k > square)
+        return left, int((values > self.error + spectral_norm(self.moves, 1)).sum())
 
 
 @final
 @dataclass(frozen=True, slots=True)
 class FloatAction:
-    """The isotropy of a pair over floats, and of all pairs within its error.
+    """The isotropy of a pair over floats, and of all pairs within its error."""
 
-    Within the error the matrices, as a stack, are `matrices` + sum_s y_s `moves[s]` + E with |y| <= 1 and E at most
-    `error` in the sense of the comment above; the matrices of ad on h likewise.
-    """
-
-    matrices: Array  # (k, d, d), the T_i
-    error: float
-    moves: Array  # (s, k, d, d)
-    adjoint: Array  # (k, k, k)
-    adjoint_error: float
-    adjoint_moves: Array  # (s, k, k, k)
+    rho: Enclosure  # traceless parts of rho(z_i), (k, d, d)
+    ad: Enclosure  # ad z_i on h, (k, k, k)
     lift: Array  # (d, n), orthonormal rows: the coordinates on g/h
-    size: float  # number by which rounding errors are multiplied in the T_i
-    defect: float  # relative errors of the data within which they can satisfy the axioms
+    size: float  # number by which rounding errors are multiplied in rho
+    defect: float  # relative error of the data within which they can satisfy the axioms
+
+    def columns(self) -> Array:
+        """Matrices A_a, rho relative to the data and a multiple of 1, such that sigma_d(x) is that of the A_a x."""
+        d = len(self.lift)
+        values, basis = orthonormal_span(self.rho.center, 0.0)
+        return np.concatenate([values[:, None, None] * basis / (self.size or 1.0), np.eye(d)[None] / d**0.5])
 
 
 def spectral_norm(array: Array, axes: int) -> float:
@@ -63,64 +73,47 @@ def spectral_norm(array: Array, axes: int) -> float:
     return float(np.linalg.norm(array.reshape(rows, -1), 2)) if array.size else 0.0
 
 
-def traceless(matrices: Array) -> Array:
-    """Matrices (..., d, d) without their traces."""
-    d = matrices.shape[-1]
-    return np.asarray(matrices - (np.trace(matrices, axis1=-2, axis2=-1) / d)[..., None, None] * np.eye(d))
-
-
 def float_action(pair: Pair, *, rtol: float | None = None, conjugated: bool = False) -> FloatAction:
-    """`FloatAction` with the error of the data, or with another relative one.
-
-    If `conjugated`, G is restricted by the conditions D(G) and D_0(G), which takes more time.
-    """
+    """`FloatAction` with the error of the data or another relative one; `conjugated` uses all three bounds on G."""
     n, d, k = pair.algebra.dimension, pair.dimension, pair.subalgebra.dimension
-    exact = pair.field.exact
-    constants = (pair.algebra.over(RR) if exact else pair.algebra).table
+    constants = (pair.algebra.over(RR) if pair.field.exact else pair.algebra).table
     table: Any = constants.flat()
-    rows: Any = RR.matrix(pair.subalgebra.basis.to_numpy(), (k, n)) if exact else pair.subalgebra.basis
+    rows: Any = RR.matrix(pair.subalgebra.basis.to_numpy(), (k, n)) if pair.field.exact else pair.subalgebra.basis
     _, values, both = np.linalg.svd(rows.array)
     least = float(values[-1]) if k else 1.0
-    e = table.error if rtol is None else rtol * table.norm
-    r = (rows.error if rtol is None else rtol * rows.norm) / least
+    e, r = (max(x.error, LEAST * x.norm) if rtol is None else rtol * x.norm for x in (table, rows))
+    r = r / least
     y = r / (1 - r) if r < 1 else 1.0
     c = np.einsum("ai,bj,ijl,cl->abc", both, both, table.array.reshape(n, n, n), both, optimize=True)
     h, w = slice(0, k), slice(k, n)
     across, inside, twice = (spectral_norm(c[w, x, z], 1) for x, z in ((w, w), (h, h), (w, h)))
     own, outside = (1 + y * y) * e / 2**0.5 + y * y * twice, spectral_norm(c[h, h, w], 0)
     error = own + y * (across + spectral_norm(c[h, w, h], 2)) if r < 1 else np.inf
-    adjoint_error = own + 2 * y * inside if r < 1 else np.inf
-    moves = np.zeros((0, k, d))
+    ad_error, moves = own + 2 * y * inside if r < 1 else np.inf, np.zeros((0, k, d))
     if conjugated and 0 < error < np.inf and (k * d) * k * k * d <= MAX_MOVES:
         closing = outside + (1 + y * y) ** 1.5 * e + y * y * (across + 2 * inside + y * twice)
         moves = _least_graphs(c, k, closing, y * error, y)
-        error = adjoint_error = own
+        error = ad_error = own
     leaving = np.einsum("sia,ajl->silj", moves, c[w, w, w]) - np.einsum("ijb,sbl->silj", c[h, w, h], moves)
     turned = np.einsum("sia,ajl->silj", moves, c[w, h, h]) - np.einsum("sja,ail->silj", moves, c[w, h, h])
+    stacks = np.concatenate([c[h, w, w].transpose(0, 2, 1)[None], leaving])
+    stacks = stacks - (np.trace(stacks, axis1=2, axis2=3) / d)[..., None, None] * np.eye(d)
+    rho = Enclosure(stacks[0], error, stacks[1:])
+    ad = Enclosure(c[h, h, h].transpose(0, 2, 1), ad_error, turned)
     size = table.norm * (1 + 2 * rows.norm / least)
-    return FloatAction(
-        matrices=traceless(c[h, w, w].transpose(0, 2, 1)),
-        error=error,
-        moves=traceless(leaving),
-        adjoint=c[h, h, h].transpose(0, 2, 1),
-        adjoint_error=adjoint_error,
-        adjoint_moves=turned,
-        lift=both[k:],
-        size=size,
-        defect=max(jacobi_tolerance(constants), outside / (size or 1.0)),
-    )
+    return FloatAction(rho, ad, both[k:], size, max(failure_over_floats(constants)[0], outside / (size or 1.0)))
 
 
 def _least_graphs(c: Array, k: int, closing: float, orthogonal: float, y: float) -> Array:
-    """Maps G_s, shape (s, k, d), such that every G with the three bounds above is sum_s y_s G_s with |y| <= 1."""
+    """Maps G_s, shape (s, k, d), such that every G within the three bounds is sum_s y_s G_s with |y| <= 1."""
     h, w = slice(0, k), slice(k, len(c))
     d = len(c) - k
     maps = np.eye(k * d).reshape(k * d, k, d)
     moved = np.einsum("sia,ajl->sijl", maps, c[w, h, w])
     closed = moved - moved.transpose(0, 2, 1, 3) - np.einsum("ijb,sbl->sijl", c[h, h, h], maps)
-    first = closed.reshape(k * d, -1) / closing
-    second = np.einsum("sjl,jal->sa", maps, c[h, w, w]) / orthogonal
-    left, values, _ = np.linalg.svd(np.concatenate([first, second, np.eye(k * d) / y], axis=1), full_matrices=False)
+    turned = np.einsum("sjl,jal->sa", maps, c[h, w, w])
+    bounds = [closed.reshape(k * d, -1) / closing, turned / orthogonal, np.eye(k * d) / y]
+    left, values, _ = np.linalg.svd(np.concatenate(bounds, axis=1), full_matrices=False)
     return np.asarray((left / np.maximum(values, 1 / y) * 3**0.5).T.reshape(k * d, k, d))
 
 
@@ -133,13 +126,9 @@ def _least_graphs(c: Array, k: int, closing: float, orthogonal: float, y: float)
 # along g = exp(X), X symmetric, with the gradient M = sum_a [E_a, E_a^T]. The volume is least if and only if the span
 # is self-adjoint. Newton's method minimizes it.
 #
-# With inexact matrices all of this is approximate, and only proposes skew-symmetric matrices K_b that are orthonormal.
-# Whatever they are, let v(x) be the smallest singular value of N(x), the matrix with columns K_b x and x, at a unit
-# vector x, and q the Frobenius norm of the parts of all [K_a, K_b] outside of the span. Along x' = A x with A in the
-# span, N' = A N + N S + R with S skew-symmetric, since <[A, K_b], K_c> is antisymmetric in b and c, and |R| <= q |A|.
-# So |v'| <= q |A|. To move with speed 1 in a given direction, |A| <= 1 / v is enough. Every vector is at most pi / 2
-# from x or -x, hence v^2 >= v(x)^2 - pi q on the whole sphere. Let sum_i p_bi g (T_i + E_i + L(G)_i) g^-1 = K_b + R_b
-# up to multiples of 1. By Weyl's inequality for singular values the pair is full if v > |(R_b x)_b| for all unit x.
+# With inexact matrices this only proposes skew-symmetric matrices K_b that are orthonormal. The proof that data within
+# the error are full (section 9) needs the sizes of the parts of [K_a, K_b] outside of their span, and of the difference
+# from combinations of g rho g^-1.
 
 STEPS, CONJUGATE_STEPS, SAMPLES = 80, 60, 8
 MAX_CONDITION = 1e9
@@ -164,19 +153,18 @@ def orthonormal_span(matrices: Array, bound: float) -> tuple[Array, Array]:
     return values[kept], right[kept].reshape(-1, d, d)
 
 
-def transitive_group(matrices: Array, error: float, moves: Array) -> TransitiveGroup | None:
-    """`TransitiveGroup` of the isotropy `matrices` + E + sum_s y_s `moves[s]`, or None if none was found."""
-    d = matrices.shape[1]
-    left, values, right = np.linalg.svd(matrices.reshape(len(matrices), d * d), full_matrices=False)
-    rank = int((values > error + spectral_norm(moves, 1)).sum())
+def transitive_group(rho: Enclosure) -> TransitiveGroup | None:
+    """`TransitiveGroup` of the isotropy, or None if none was found."""
+    matrices, d, (left, rank) = rho.center, rho.center.shape[1], rho.span()
     if rank + 1 < d:
         return None
-    g = self_adjoint_position(right[:rank].reshape(rank, d, d))
+    basis = np.tensordot(left[:, :rank].T, matrices, 1)
+    g = self_adjoint_position(basis / np.linalg.norm(basis, axis=(1, 2), keepdims=True))
     condition = float(np.linalg.cond(g))
     if not condition < MAX_CONDITION:
         return None
     inverse, members = np.linalg.inv(g), left[:, :rank].T
-    moved = (g @ np.tensordot(members, matrices, 1) @ inverse).reshape(rank, d * d)
+    moved = (g @ basis @ inverse).reshape(rank, d * d)
     left, values, right = np.linalg.svd(moved, full_matrices=False)
     turned = right.reshape(rank, d, d)
     skew = (turned - turned.transpose(0, 2, 1)).reshape(rank, d * d) / 2
@@ -194,8 +182,8 @@ def transitive_group(matrices: Array, error: float, moves: Array) -> TransitiveG
     value = max(least, 0.0) ** 0.5 - spectral_norm(rest, 2)
     if not value > 0:
         return None
-    moves = g @ np.tensordot(members, moves, (1, 1)).swapaxes(0, 1) @ inverse
-    error = condition * spectral_norm(members, 1) * error + spectral_norm(moves, 1)
+    moves = g @ np.tensordot(members, rho.moves, (1, 1)).swapaxes(0, 1) @ inverse
+    error = condition * spectral_norm(members, 1) * rho.error + spectral_norm(moves, 1)
     point = np.linalg.solve(g, points[values.argmax()])
     return TransitiveGroup(value, error, point / np.linalg.norm(point))
 
@@ -272,27 +260,20 @@ def _log_volume(basis: Array) -> float:
     return 2 * float(np.log(np.maximum(values, 1e-300)).sum())
 
 
-# Dominance (theorem 4 of docs/theory/fullness.md) for all data within the error. Let X be in h, c > e > 0, W the sum of
-# the generalized eigenspaces of rho(X) for eigenvalues with Re > c, and n the number of eigenvalues of ad X on h with
-# Re <= -e. If no eigenvalue of rho(X) has Re in [c - e, c], then the eigenspaces of ad X with Re > -e map W to W, so
-# dim (rho(h) x + R x) <= dim W + n for every x in W, and the pair is not full if this is less than d. The same is true
-# with |Im| in place of Re for rho(X), and |Im| >= e for ad X. These conditions are open. They hold within the error if
-# they hold for intervals that contain the real parts of all eigenvalues, multiplied by f = 1 or f = -i.
-#
-# X is proposed by iterations: the trace form of the next X is that of the projection to the eigenspaces of X at the
-# largest real part. Its limits are dual to highest weights. Then an element that acts by 0 on g/h is added to X, with
-# the largest trace of ad on all such elements, so that few of them count in n.
+# Dominance (theorem 4 of docs/theory/fullness.md) for all data within the error, by real parts (f = 1) or by absolute
+# values of imaginary parts (f = -i): section 9. X in h is proposed by iterations: the trace form of the next X is that
+# of the projection to the eigenspaces of X at the largest real part. Its limits are dual to highest weights. Then an
+# element that acts by 0 on g/h is added, with the largest trace of ad on such elements, so that few of them count.
 
 ATTEMPTS, ITERATIONS, SHIFTS = 6, 4, (0.0, 2.0, 8.0)
-CLUSTER = 1e-2
-"""Real parts that differ by less, relative to the largest modulus, are enclosed together."""
+CLUSTER = 1e-2  # real parts that differ by less, relative to the largest modulus, are enclosed together
 
-Interval: TypeAlias = tuple[float, float, int]
-"""Bounds and the number of eigenvalues whose real parts are between them."""
+Interval: TypeAlias = tuple[float, float, int]  # bounds, and the number of eigenvalues between them
 
 
-def real_parts(matrix: Array, error: float, moves: Array) -> list[Interval]:
-    """Intervals for the real parts of eigenvalues of `matrix` + E + sum_s y_s `moves[s]`, |E| <= `error`, |y| <= 1."""
+def real_parts(element: Enclosure) -> list[Interval]:
+    """Intervals that contain the real parts of the eigenvalues of all matrices (d, d) of an element."""
+    matrix = element.center
     values, vectors = np.linalg.eig(matrix)
     order = np.argsort(values.real)
     cuts = np.flatnonzero(np.diff(values.real[order]) > CLUSTER * np.abs(values).max()) + 1
@@ -308,7 +289,7 @@ def real_parts(matrix: Array, error: float, moves: Array) -> list[Interval]:
         parts.append(np.linalg.eigvalsh((part + part.conj().T) / 2))
         outside[block, block] = 0
     # farther than this from the numerical ranges of the blocks, the blocks minus z are larger than what was left out
-    radius = condition * error + spectral_norm(inverse @ moves @ basis, 1) + spectral_norm(outside, 1)
+    radius = condition * element.error + spectral_norm(inverse @ element.moves @ basis, 1) + spectral_norm(outside, 1)
     return [(float(part[0]) - radius, float(part[-1]) + radius, len(part)) for part in parts]
 
 
@@ -326,48 +307,41 @@ def _disjoint(intervals: list[Interval], *, folded: bool) -> list[Interval]:
 
 
 def _dominates(action: FloatAction, x: Array, f: complex) -> bool:
-    """Whether the element with the coefficients x, |x| = 1, shows that no pair within the error is full."""
-    matrix, moves = np.tensordot(x, action.matrices, 1), np.tensordot(x, action.moves, (0, 1))
-    intervals = _disjoint(real_parts(f * matrix, action.error, f * moves), folded=f != 1)
-    if len(intervals) == 1:
-        return False
-    matrix, moves = np.tensordot(x, action.adjoint, 1), np.tensordot(x, action.adjoint_moves, (0, 1))
-    roots = _disjoint(real_parts(-f * matrix, action.adjoint_error, -f * moves), folded=f != 1)
+    """Whether the element with the coefficients x shows that no pair within the error is full."""
+    x = x / np.linalg.norm(x)
+    parts = _disjoint(real_parts(action.rho.element(x, f)), folded=f != 1)
+    roots = _disjoint(real_parts(action.ad.element(x, -f)), folded=f != 1) if len(parts) > 1 else []
     above = 0
-    for (low, _, number), (_, high, _) in pairwise(intervals):
+    for (low, _, number), (_, high, _) in pairwise(parts):
         above += number
-        if above + sum(n for _, top, n in roots if top >= low - high) < action.matrices.shape[1]:
+        if above + sum(n for _, top, n in roots if top >= low - high) < len(action.lift):
             return True
     return False
 
 
 def dominated_vector(action: FloatAction) -> Array | None:
     """A vector of W of an element that shows that no pair within the error is full, or None if none was found."""
-    (k, d), rng = action.matrices.shape[:2], np.random.default_rng(0)
-    flat = action.matrices.reshape(k, d * d)
-    left, values, _ = np.linalg.svd(flat, full_matrices=k > d * d)
-    rank = int((values > action.error + spectral_norm(action.moves, 1)).sum())
+    matrices, rng, (left, rank) = action.rho.center, np.random.default_rng(0), action.rho.span()
     acting, still = left[:, :rank], left[:, rank:]
-    traces = np.einsum("ia,ijl,lb,jb->a", still, action.adjoint, still, still, optimize=True)
+    traces = np.einsum("ia,ijl,lb,jb->a", still, action.ad.center, still, still, optimize=True)
     length = float(np.linalg.norm(traces))
-    shifts = SHIFTS if length > CLUSTER * float(np.linalg.norm(action.adjoint)) else SHIFTS[:1]
+    shifts = SHIFTS if length > CLUSTER * float(np.linalg.norm(action.ad.center)) else SHIFTS[:1]
     shift = still @ traces / (length or 1.0)
-    dual = np.linalg.pinv(np.einsum("aij,bji->ab", action.matrices, action.matrices), rcond=1e-4, hermitian=True)
+    dual = np.linalg.pinv(np.einsum("aij,bji->ab", matrices, matrices), rcond=1e-4, hermitian=True)
     for f in (1.0, -1j) * ATTEMPTS if rank else ():
         x = acting @ rng.standard_normal(rank)
         for i in range(ITERATIONS):
-            length = float(np.linalg.norm(x))
-            if not length > 0:
+            if not (length := float(np.linalg.norm(x))) > 0:
                 break
             x = x / length
-            values, vectors = np.linalg.eig(f * np.tensordot(x, action.matrices, 1))
+            values, vectors = np.linalg.eig(f * np.tensordot(x, matrices, 1))
             top = values.real >= values.real.max() - CLUSTER * np.abs(values).max()
-            for s in shifts:
-                if _dominates(action, (x + s * shift) / np.linalg.norm(x + s * shift), f):
-                    vector = vectors[:, top][:, 0]
-                    return np.asarray((vector / vector[np.abs(vector).argmax()]).real)
+            if any(_dominates(action, x + s * shift, f) for s in shifts):
+                vector = vectors[:, top][:, 0]
+                vector = np.asarray((vector / vector[np.abs(vector).argmax()]).real)
+                return vector / np.linalg.norm(vector)
             projection = vectors[:, top] @ np.linalg.pinv(vectors)[top]
-            x = (f * np.einsum("aij,ji->a", action.matrices, projection)).real
+            x = (f * np.einsum("aij,ji->a", matrices, projection)).real
             x = dual @ x if i % 2 == 0 else x
     return None
 
@@ -423,27 +397,19 @@ def _improved(basis: Array, x: Array) -> tuple[float, Array]:
 
 # Numerical answer for pairs over float64: full, not full or undecided, with the numbers that it rests on.
 #
-# Full and dominated are open conditions, and they are answered if they hold for all data within the error
-# (`transitive_group`, `dominated_vector`), whatever has been found by a search. The bounds are those of real numbers;
-# a gap of 2 leaves room for rounding.
-#
-# Not full is not an open condition in general: data nearby may be full, so no size of an error can exclude it. It is
-# also answered for the data as given, if an x was found with sigma_d(x) at most 2^12 units of round-off. Here
-# sigma_d(x) is the smallest singular value of the matrix with columns T_i x and x, relative to the norm of the data.
-# Data that are computed, in a rotated basis say, are off by a few hundred units; a value above this level is not a
-# zero. The basis elements of g can have units of very different sizes, so the same must hold after they are rescaled
-# such that all structure constants have similar sizes. The cases in between are undecided.
+# Not full is also answered for the data as given, if an x was found with sigma_d(x) at most 2^12 units of round-off,
+# relative to the norm of the data. Data that are computed, in a rotated basis say, are off by a few hundred units; a
+# value above this level is not a zero. The basis elements of g can have units of very different sizes, so the same must
+# hold after they are rescaled such that all structure constants have similar sizes.
 
 NumericalVerdict: TypeAlias = NumericallyFull | NumericallyNotFull | NumericallyUndecided
 """A result of `decide_numerically`."""
 
-MIN_GAP = 2.0
-"""Full is answered if sigma_d is at least so many times its error."""
+MIN_GAP = 2.0  # least ratio of sigma_d and its error for the answer full, which leaves room for rounding
+LEAST = 2.0**-46  # least relative error of data, for the same reason
 ROUNDING = 2.0**12 * float(np.finfo(np.float64).eps)
 """Relative size below which sigma_d is zero up to rounding."""
-
-MAX_LOG = 100.0
-"""Largest logarithm of the factor of a basis element."""
+MAX_LOG = 100.0  # largest logarithm of the factor of a basis element
 
 
 def decide_numerically(pair: Pair, *, starts: int = 60, seed: int = 0) -> NumericalVerdict:
@@ -489,43 +455,30 @@ def decide_numerically(pair: Pair, *, starts: int = 60, seed: int = 0) -> Numeri
     k, action = pair.subalgebra.dimension, float_action(pair)
     if k + 1 < d:
         reason = f"dim h + 1 = {k + 1} is less than dim g/h = {d}, whatever the numbers are"
-        return NumericallyNotFull(pair, reason, 0.0, rtol / 1e-300, _eta(action, np.eye(d)[0]))
+        return _not_full(pair, action, rtol, np.eye(d)[0], 0.0, reason)
     for conjugated in (False, True):
         action = float_action(pair, conjugated=True) if conjugated else action
-        group = transitive_group(action.matrices, action.error, action.moves)
+        group = transitive_group(action.rho)
         if group is not None and group.value >= MIN_GAP * group.error:
             return _full(pair, group, action)
         if (x := dominated_vector(action)) is not None:
-            return _not_full(pair, action, rtol, x)
-    value, x = _least(action, starts, seed)
+            value, _ = smallest(action.columns(), x)
+            reason = (
+                f"sigma_d = {value:.1e} relative to the data at an eta, and the eigenvalues of an element of h show a "
+                f"rank below {d} for all data within the error {rtol:.1e}"
+            )
+            return _not_full(pair, action, rtol, x, value, reason)
+    value, x = least_singular_value(action.columns(), starts=starts, seed=seed)
     rounding = min(ROUNDING, rtol)
     if group is not None and not group.value * rtol > group.error * rounding:
         group = None  # rounding alone can cause it
-    if max(value, action.defect) > rounding or group is not None:
+    if max(value, action.defect) > rounding or group or _is_above_rounding(_rescaled(pair), rounding, starts, seed):
         return _undecided(pair, group, rtol, action, value, x)
-    if _is_above_rounding(_rescaled(pair), rounding, starts, seed):
-        reason = (
-            f"an eta with sigma_d = {value:.1e} relative to the data was found, but it is not zero up to the rounding "
-            f"level {rounding:.1e} after the basis of g is rescaled, and the error of the data is {rtol:.1e}"
-        )
-        return NumericallyUndecided(pair, reason, value, value / rtol, _eta(action, x))
     reason = (
         f"an eta with sigma_d = {value:.1e} relative to the data was found, zero up to the rounding level "
         f"{rounding:.1e}; rounding alone can cause it, since data within the error {rtol:.1e} can be full"
     )
-    return NumericallyNotFull(pair, reason, value, rtol / max(value, 1e-300), _eta(action, x))
-
-
-def _columns(action: FloatAction) -> Array:
-    """Matrices A_a, the T_i relative to the data and a multiple of 1, such that sigma_d(x) is that of the A_a x."""
-    d = action.matrices.shape[1]
-    values, basis = orthonormal_span(action.matrices, 0.0)
-    return np.concatenate([values[:, None, None] * basis / (action.size or 1.0), np.eye(d)[None] / d**0.5])
-
-
-def _least(action: FloatAction, starts: int, seed: int) -> tuple[float, Array]:
-    """The least sigma_d that was found, and x."""
-    return least_singular_value(_columns(action), starts=starts, seed=seed)
+    return _not_full(pair, action, rtol, x, value, reason)
 
 
 def _is_above_rounding(pair: Pair, rounding: float, starts: int, seed: int) -> bool:
@@ -533,8 +486,9 @@ def _is_above_rounding(pair: Pair, rounding: float, starts: int, seed: int) -> b
     if pair.subalgebra.basis.rank() < pair.subalgebra.dimension:
         return True
     action = float_action(pair, rtol=rounding)
-    group = transitive_group(action.matrices, action.error, action.moves)
-    return (group is not None and group.value > group.error) or _least(action, starts, seed)[0] > rounding
+    group = transitive_group(action.rho)
+    is_full = group is not None and group.value > group.error
+    return is_full or least_singular_value(action.columns(), starts=starts, seed=seed)[0] > rounding
 
 
 def _rescaled(pair: Pair) -> Pair:
@@ -564,13 +518,7 @@ def _full(pair: Pair, group: TransitiveGroup, action: FloatAction) -> Numericall
     return NumericallyFull(pair, reason, group.value, gap, _eta(action, group.point))
 
 
-def _not_full(pair: Pair, action: FloatAction, rtol: float, x: Array) -> NumericallyNotFull:
-    x = x / np.linalg.norm(x)
-    value = smallest(_columns(action), x)[0]
-    reason = (
-        f"sigma_d = {value:.1e} relative to the data at an eta that an element of h contracts, and the eigenvalues of "
-        f"this element show rank below {len(x)} for all data within the error {rtol:.1e}"
-    )
+def _not_full(pair: Pair, action: FloatAction, rtol: float, x: Array, value: float, reason: str) -> NumericallyNotFull:
     return NumericallyNotFull(pair, reason, value, rtol / max(value, 1e-300), _eta(action, x))
 
 
@@ -584,13 +532,12 @@ def _undecided(
             f"where {MIN_GAP:.0f} is needed"
         )
         return NumericallyUndecided(pair, reason, group.value, gap, _eta(action, group.point))
-    gap = value / rtol
     reason = (
-        f"nothing was found that holds for all data within the error {rtol:.1e}; for an answer about the numbers as "
-        f"given, the least sigma_d found, {value:.1e} relative to the data, and the relative error {action.defect:.1e} "
-        f"with which they satisfy the axioms would have to be at most the rounding level {ROUNDING:.1e}"
+        f"the least sigma_d found is {value:.1e} relative to the data, which satisfy the axioms up to "
+        f"{action.defect:.1e}: not both zero up to the rounding level {ROUNDING:.1e} in all units of the basis of g; "
+        f"and nothing was found that holds for all data within the error {rtol:.1e}"
     )
-    return NumericallyUndecided(pair, reason, value, gap, _eta(action, x))
+    return NumericallyUndecided(pair, reason, value, value / rtol, _eta(action, x))
 
 
 def _eta(action: FloatAction, x: Array) -> list[float]:

@@ -193,22 +193,13 @@ PRODUCTS = 6.0  # the error of J is at most this many times the norm of the tabl
 Failure = tuple[tuple[int, int, int], dict[int, Scalar]]
 
 
-def failure_over_floats(table: StructureConstants) -> tuple[Failure, float] | None:
-    """None if the identity holds; else a cyclic sum that is not zero, and the `jacobi_tolerance` of the table."""
-    tolerance, worst, scaled, unit = _largest_defect(table)
-    return None if tolerance * table.norm() <= table.error else (scaled.located(*worst, unit), tolerance)
-
-
-def jacobi_tolerance(table: StructureConstants) -> float:
-    """The least error, relative to the norm of a table over floats, within which the Jacobi identity can hold."""
-    return _largest_defect(table)[0]
-
-
-def _largest_defect(table: StructureConstants) -> tuple[float, tuple[Array, Array], _Scaled, float]:
-    """`jacobi_tolerance`, two elements x and y with a large J(x, y), the scaled table and its unit."""
+def failure_over_floats(table: StructureConstants) -> tuple[float, Failure]:
+    """The least relative error of the table with which the identity can hold, and a cyclic sum that is not zero."""
     norm, n = table.norm(), table.dimension
     if not math.isfinite(norm):
         raise FieldError("the norm of the table leaves the range of float64; multiply it by a power of two, or use QQ")
+    if norm == 0:
+        return 0.0, ((0, 0, 0), {})
     unit = 2.0 ** min(math.frexp(norm)[1], 1023)
     scaled = _Scaled(table, unit)
     squares, worst = 0.0, (0.0, np.zeros(n), np.zeros(n))
@@ -217,7 +208,7 @@ def _largest_defect(table: StructureConstants) -> tuple[float, tuple[Array, Arra
         squares += size * size
         worst = max(worst, (size, x, y), key=lambda defect: defect[0])
     mean = 2 * squares if n <= ALL_PAIRS else squares / RANDOM_PAIRS
-    return math.sqrt(mean) / (PRODUCTS * (norm / unit) ** 2) if norm else 0.0, worst[1:], scaled, unit
+    return math.sqrt(mean) / (PRODUCTS * (norm / unit) ** 2), scaled.located(worst[1], worst[2], unit)
 
 
 def _pairs(n: int) -> Iterator[tuple[Array, Array]]:
@@ -294,9 +285,9 @@ def prove_jacobi(table: StructureConstants, names: tuple[str, ...]) -> None:
     if not len(table):
         return
     if isinstance(table.field, FloatField):
-        failure = failure_over_floats(table)
-        if failure is not None:
-            _fail(table, *failure[0], names, failure[1])
+        tolerance, failure = failure_over_floats(table)
+        if tolerance * table.norm() > table.error:
+            _fail(table, *failure, names, tolerance)
         return
     n, terms = table.dimension, table.jacobi_terms()
     over_rationals = len(table.parts) == 1
