@@ -405,7 +405,7 @@ def _improved(basis: Array, x: Array) -> tuple[float, Array]:
 NumericalVerdict: TypeAlias = NumericallyFull | NumericallyNotFull | NumericallyUndecided
 """A result of `decide_numerically`."""
 
-MIN_GAP = 2.0  # least ratio of sigma_d and its error for the answer full, which leaves room for rounding
+MIN_GAP = 1.5  # least ratio of sigma_d and its error for the answer full, which leaves room for rounding
 LEAST = 2.0**-46  # least relative error of data, for the same reason
 ROUNDING = 2.0**12 * float(np.finfo(np.float64).eps)
 """Relative size below which sigma_d is zero up to rounding."""
@@ -427,7 +427,7 @@ def decide_numerically(pair: Pair, *, starts: int = 60, seed: int = 0) -> Numeri
     Returns
     -------
     NumericallyFull
-        If every pair within the error of the data is full, with a gap of at least 2.
+        If every pair within the error of the data is full, with a gap of at least 1.5.
     NumericallyNotFull
         If no pair within the error of the data is full; or if the rank drops at some eta up to rounding, and the data
         satisfy the axioms up to rounding. Rounding alone can cause the second.
@@ -529,7 +529,7 @@ def _undecided(
         gap = group.value / group.error
         reason = (
             f"sigma_d = {group.value:.3g} at every eta, but its error is {group.error:.1e}, a gap of {gap:.1e} "
-            f"where {MIN_GAP:.0f} is needed"
+            f"where {MIN_GAP:g} is needed"
         )
         return NumericallyUndecided(pair, reason, group.value, gap, _eta(action, group.point))
     reason = (

@@ -364,7 +364,7 @@ class NumericallyFull(_Numerical):
         Lower bound of the smallest singular value sigma_d of the matrix with columns K_b x and x at every unit vector
         x. The K_b are an orthonormal basis of the elements of the traceless rho(h) that preserve an inner product.
     gap : float
-        `smallest` divided by `tolerance`, at least 2.
+        `smallest` divided by `tolerance`, at least 1.5.
     tolerance : float
         Error of `smallest`, propagated from the error of the data.
     eta : list of float
@@ -438,7 +438,7 @@ class NumericallyUndecided(_Numerical):
     Attributes
     ----------
     smallest, gap, tolerance, eta
-        As in `NumericallyFull` if a transitive group was found, so that `gap` is less than 2. Else `smallest` is the
+        As in `NumericallyFull` if a transitive group was found, so that `gap` is less than 1.5. Else `smallest` is the
         least singular value that was found, as in `NumericallyNotFull`, and `gap` is `smallest` divided by `tolerance`.
 
     Examples
