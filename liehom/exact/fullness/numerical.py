@@ -38,9 +38,9 @@ class Enclosure:
     moves: Array  # (s, k, d, d)
 
     def element(self, x: Array, factor: complex) -> Enclosure:
-        """The combination of the matrices by a unit vector x, times a factor of modulus 1."""
-        center, moves = np.tensordot(x, self.center, 1), np.tensordot(x, self.moves, (0, 1))
-        return Enclosure(factor * center, self.error, factor * moves)
+        """The combination of the matrices by a unit vector x, times a complex factor of modulus 1."""
+        f: Any = factor
+        return Enclosure(f * np.tensordot(x, self.center, 1), self.error, f * np.tensordot(x, self.moves, (0, 1)))
 
     def span(self) -> tuple[Array, int]:
         """Left singular vectors (k, k) of the flat matrices, and the number of singular values above all errors."""
