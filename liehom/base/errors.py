@@ -6,6 +6,7 @@ elements, a key of a file), the exception carries it as an attribute.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -122,12 +123,17 @@ class JacobiError(StructureError):
         value: dict[int, str],
         names: tuple[str, str, str],
         basis: Sequence[str] = (),
+        tolerance: float = 1.0,
     ) -> None:
         self.indices, self.value = indices, value
+        power = math.ceil(math.log10(tolerance))  # a failure as large as 1e-2 is not due to inexact numbers
+        remedy = (
+            f"; it holds up to a relative error of {tolerance:.1e}: declare it by field=lh.FloatField(rtol=1e{power})"
+        )
         terms = " + ".join(f"({shown(v)})*{basis[k] if basis else f'e{k}'}" for k, v in sorted(value.items()))
         super().__init__(
             f"the Jacobi identity fails for (i, j, k) = {indices}, that is for {', '.join(names)}: "
-            f"[[i,j],k] + [[j,k],i] + [[k,i],j] = {terms}, expected 0"
+            f"[[i,j],k] + [[j,k],i] + [[k,i],j] = {terms}, expected 0{remedy if power < -1 else ''}"
         )
 
 

@@ -3,17 +3,119 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TypeAlias, final
+from itertools import pairwise
+from typing import Any, TypeAlias, final
 
 import numpy as np
 
 from liehom.base.typing import Array
+from liehom.exact.algebra.core.jacobi import failure_over_floats
 from liehom.exact.algebra.core.lie_algebra import LieAlgebra
 from liehom.exact.algebra.core.structure_constants import StructureConstants
 from liehom.exact.algebra.core.subalgebra import Subalgebra
 from liehom.exact.fullness.verdict import NumericallyFull, NumericallyNotFull, NumericallyUndecided
 from liehom.exact.representations.core.pair import Pair
-from liehom.exact.scalars.floating import RR, FloatField, FloatMatrix
+from liehom.exact.scalars.floating import RR, FloatField
+
+# Bounds of the isotropy of all pairs within the error of the data, proved in section 9 of docs/theory/fullness.md. The
+# z_i are an orthonormal basis of h as given, and W is its orthogonal complement. The subalgebra that is meant has the
+# basis z_i + G z_i with a map G from h to W, |G| <= y. In this basis, and with the coordinates of W on g/h, rho and ad
+# change by linear functions of G and by at most e. G has three bounds, since h is closed and may be conjugated.
+
+MAX_MOVES = 3 * 10**6  # numbers in the array of closure conditions up to which they are used
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Enclosure:
+    """Stacks of matrices `center` + E + sum_s y_s `moves[s]` with |y| <= 1.
+
+    The E_i x together, for one unit vector x, and the combinations of the E_i by one unit vector, are at most `error`.
+    """
+
+    center: Array  # (k, d, d)
+    error: float
+    moves: Array  # (s, k, d, d)
+
+    def element(self, x: Array, factor: complex) -> Enclosure:
+        """The combination of the matrices by a unit vector x, times a complex factor of modulus 1."""
+        f: Any = factor
+        return Enclosure(f * np.tensordot(x, self.center, 1), self.error, f * np.tensordot(x, self.moves, (0, 1)))
+
+    def span(self) -> tuple[Array, int]:
+        """Left singular vectors (k, k) of the flat matrices, and the number of singular values above all errors."""
+        k, square = len(self.center), self.center[0].size
+        left, values, _ = np.linalg.svd(self.center.reshape(k, square), full_matrices=k > square)
+        return left, int((values > self.error + spectral_norm(self.moves, 1)).sum())
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class FloatAction:
+    """The isotropy of a pair over floats, and of all pairs within its error."""
+
+    rho: Enclosure  # traceless parts of rho(z_i), (k, d, d)
+    ad: Enclosure  # ad z_i on h, (k, k, k)
+    lift: Array  # (d, n), orthonormal rows: the coordinates on g/h
+    size: float  # number by which rounding errors are multiplied in rho
+    defect: float  # relative error of the data within which they can satisfy the axioms
+
+    def columns(self) -> Array:
+        """Matrices A_a, rho relative to the data and a multiple of 1, such that sigma_d(x) is that of the A_a x."""
+        d = len(self.lift)
+        values, basis = orthonormal_span(self.rho.center, 0.0)
+        return np.concatenate([values[:, None, None] * basis / (self.size or 1.0), np.eye(d)[None] / d**0.5])
+
+
+def spectral_norm(array: Array, axes: int) -> float:
+    """Largest singular value of an array as a matrix, with its first axes as rows; 0 if it is empty."""
+    rows = int(np.prod(array.shape[:axes]))
+    return float(np.linalg.norm(array.reshape(rows, -1), 2)) if array.size else 0.0
+
+
+def float_action(pair: Pair, *, rtol: float | None = None, conjugated: bool = False) -> FloatAction:
+    """`FloatAction` with the error of the data or another relative one; `conjugated` uses all three bounds on G."""
+    n, d, k = pair.algebra.dimension, pair.dimension, pair.subalgebra.dimension
+    constants = (pair.algebra.over(RR) if pair.field.exact else pair.algebra).table
+    table: Any = constants.flat()
+    rows: Any = RR.matrix(pair.subalgebra.basis.to_numpy(), (k, n)) if pair.field.exact else pair.subalgebra.basis
+    _, values, both = np.linalg.svd(rows.array)
+    least = float(values[-1]) if k else 1.0
+    e, r = (max(x.error, LEAST * x.norm) if rtol is None else rtol * x.norm for x in (table, rows))
+    r = r / least
+    y = r / (1 - r) if r < 1 else 1.0
+    c = np.einsum("ai,bj,ijl,cl->abc", both, both, table.array.reshape(n, n, n), both, optimize=True)
+    h, w = slice(0, k), slice(k, n)
+    across, inside, twice = (spectral_norm(c[w, x, z], 1) for x, z in ((w, w), (h, h), (w, h)))
+    own, outside = (1 + y * y) * e / 2**0.5 + y * y * twice, spectral_norm(c[h, h, w], 0)
+    error = own + y * (across + spectral_norm(c[h, w, h], 2)) if r < 1 else np.inf
+    ad_error, moves = own + 2 * y * inside if r < 1 else np.inf, np.zeros((0, k, d))
+    if conjugated and 0 < error < np.inf and (k * d) * k * k * d <= MAX_MOVES:
+        closing = outside + (1 + y * y) ** 1.5 * e + y * y * (across + 2 * inside + y * twice)
+        moves = _least_graphs(c, k, closing, y * error, y)
+        error = ad_error = own
+    leaving = np.einsum("sia,ajl->silj", moves, c[w, w, w]) - np.einsum("ijb,sbl->silj", c[h, w, h], moves)
+    turned = np.einsum("sia,ajl->silj", moves, c[w, h, h]) - np.einsum("sja,ail->silj", moves, c[w, h, h])
+    stacks = np.concatenate([c[h, w, w].transpose(0, 2, 1)[None], leaving])
+    stacks = stacks - (np.trace(stacks, axis1=2, axis2=3) / d)[..., None, None] * np.eye(d)
+    rho = Enclosure(stacks[0], error, stacks[1:])
+    ad = Enclosure(c[h, h, h].transpose(0, 2, 1), ad_error, turned)
+    size = table.norm * (1 + 2 * rows.norm / least)
+    return FloatAction(rho, ad, both[k:], size, max(failure_over_floats(constants)[0], outside / (size or 1.0)))
+
+
+def _least_graphs(c: Array, k: int, closing: float, orthogonal: float, y: float) -> Array:
+    """Maps G_s, shape (s, k, d), such that every G within the three bounds is sum_s y_s G_s with |y| <= 1."""
+    h, w = slice(0, k), slice(k, len(c))
+    d = len(c) - k
+    maps = np.eye(k * d).reshape(k * d, k, d)
+    moved = np.einsum("sia,ajl->sijl", maps, c[w, h, w])
+    closed = moved - moved.transpose(0, 2, 1, 3) - np.einsum("ijb,sbl->sijl", c[h, h, h], maps)
+    turned = np.einsum("sjl,jal->sa", maps, c[h, w, w])
+    bounds = [closed.reshape(k * d, -1) / closing, turned / orthogonal, np.eye(k * d) / y]
+    left, values, _ = np.linalg.svd(np.concatenate(bounds, axis=1), full_matrices=False)
+    return np.asarray((left / np.maximum(values, 1 / y) * 3**0.5).T.reshape(k * d, k, d))
+
 
 # Inner products in which a span of matrices is self-adjoint, and the test that its compact part is transitive.
 #
@@ -24,26 +126,23 @@ from liehom.exact.scalars.floating import RR, FloatField, FloatMatrix
 # along g = exp(X), X symmetric, with the gradient M = sum_a [E_a, E_a^T]. The volume is least if and only if the span
 # is self-adjoint. Newton's method minimizes it.
 #
-# Let K_b be an orthonormal basis of K. If K is transitive on the unit sphere, then the smallest singular value of the
-# matrix with columns K_b x and x is the same at every unit vector x, because the group of K acts on K by orthogonal
-# maps. One x shows its minimum over the sphere.
+# With inexact matrices this only proposes skew-symmetric matrices K_b that are orthonormal. The proof that data within
+# the error are full (section 9) needs the sizes of the parts of [K_a, K_b] outside of their span, and of the difference
+# from combinations of g rho g^-1.
 
 STEPS, CONJUGATE_STEPS, SAMPLES = 80, 60, 8
 MAX_CONDITION = 1e9
 """Condition of g beyond which the span has no self-adjoint position that floats can see."""
-SELF_ADJOINT = 1e-6
-"""Largest part of a transposed unit element outside of a span that is called self-adjoint."""
 
 
 @final
 @dataclass(frozen=True, slots=True)
 class TransitiveGroup:
-    """An inner product |g x|^2 whose orthogonal group meets the group of L0 in a transitive one."""
+    """Skew-symmetric matrices K_b of g L0 g^-1, for the data as given, that are transitive on the unit sphere."""
 
-    value: float  # smallest singular value of [K_b x, x] at every unit vector x, at most 1
-    smallest: float  # an error e of the matrices g A g^-1 changes the K_b by at most e / smallest
-    condition: float  # of g
-    point: Array  # a unit vector at which value was computed
+    value: float  # the smallest singular value of [K_b x, x] is at least this at every unit vector x
+    error: float  # bound on the change of this value within the error of the data
+    point: Array  # a unit vector
 
 
 def orthonormal_span(matrices: Array, bound: float) -> tuple[Array, Array]:
@@ -54,37 +153,48 @@ def orthonormal_span(matrices: Array, bound: float) -> tuple[Array, Array]:
     return values[kept], right[kept].reshape(-1, d, d)
 
 
-def transitive_group(matrices: Array, bound: float) -> TransitiveGroup | None:
-    """`TransitiveGroup` of the Lie algebra that traceless matrices span, or None if none was found."""
-    basis = orthonormal_span(matrices, bound)[1]
-    d = matrices.shape[1]
-    if len(basis) + 1 < d:
+def transitive_group(rho: Enclosure) -> TransitiveGroup | None:
+    """`TransitiveGroup` of the isotropy, or None if none was found."""
+    matrices, d, (left, rank) = rho.center, rho.center.shape[1], rho.span()
+    if rank + 1 < d:
         return None
-    g = self_adjoint_position(basis)
+    basis = np.tensordot(left[:, :rank].T, matrices, 1)
+    g = self_adjoint_position(basis / np.linalg.norm(basis, axis=(1, 2), keepdims=True))
     condition = float(np.linalg.cond(g))
     if not condition < MAX_CONDITION:
         return None
-    span = basis.reshape(-1, d * d)
-    counted = (matrices.reshape(-1, d * d) @ span.T @ span).reshape(-1, d, d)
-    # the singular values that count are those of the matrices projected to the span, as many as its dimension
-    _, values, right = np.linalg.svd((g @ counted @ np.linalg.inv(g)).reshape(-1, d * d), full_matrices=False)
-    turned = right[: len(basis)].reshape(-1, d, d)
-    if _defect(turned) > SELF_ADJOINT:
-        return None
-    skew = (turned - turned.transpose(0, 2, 1)).reshape(-1, d * d) / 2
+    inverse, members = np.linalg.inv(g), left[:, :rank].T
+    moved = (g @ basis @ inverse).reshape(rank, d * d)
+    left, values, right = np.linalg.svd(moved, full_matrices=False)
+    turned = right.reshape(rank, d, d)
+    skew = (turned - turned.transpose(0, 2, 1)).reshape(rank, d * d) / 2
     weights, parts, compact = np.linalg.svd(skew, full_matrices=False)
-    compact = compact[parts > 0.5].reshape(-1, d, d)  # the values are 0 and 1
-    if len(compact) < d - 1:
+    m = int((parts > 0.5).sum())  # the values are 0 and 1
+    if m + 1 < d:
         return None
-    points = np.random.default_rng(len(basis)).standard_normal((SAMPLES, d))
+    compact = compact[:m].reshape(m, d, d)
+    members = weights[:, :m].T / parts[:m, None] @ (left / values).T @ members  # p_bi
+    points = np.random.default_rng(rank).standard_normal((SAMPLES, d))
     points /= np.linalg.norm(points, axis=1, keepdims=True)
-    least = np.linalg.svd(np.einsum("aij,nj->nia", compact, points), compute_uv=False)[:, d - 2]
-    if not SELF_ADJOINT < least.min() > least.max() * (1 - 1e-3):
+    values = np.linalg.svd(np.einsum("aij,nj->nia", compact, points), compute_uv=False)[:, d - 2]
+    least = float(values.max()) ** 2 - np.pi * _not_closed(compact)
+    rest = g @ np.tensordot(members, matrices, 1) @ inverse - compact
+    value = max(least, 0.0) ** 0.5 - spectral_norm(rest, 2)
+    if not value > 0:
         return None
-    # the basis K_b is the matrix weights^T values^-1 times an isometry times the matrices g A g^-1
-    smallest = 1 / float(np.linalg.norm(weights[:, parts > 0.5].T / values[: len(basis)], 2))
-    point = np.linalg.solve(g, points[0])
-    return TransitiveGroup(float(least.min()), smallest, condition, point / np.linalg.norm(point))
+    moves = g @ np.tensordot(members, rho.moves, (1, 1)).swapaxes(0, 1) @ inverse
+    error = condition * spectral_norm(members, 1) * rho.error + spectral_norm(moves, 1)
+    point = np.linalg.solve(g, points[values.argmax()])
+    return TransitiveGroup(value, error, point / np.linalg.norm(point))
+
+
+def _not_closed(basis: Array) -> float:
+    """Frobenius norm of the parts of all commutators of an orthonormal basis (m, d, d) outside of its span."""
+    span, square = basis.reshape(len(basis), -1), 0.0
+    for a in basis:
+        brackets = (a @ basis - basis @ a).reshape(span.shape)
+        square += float(np.sum((brackets - brackets @ span.T @ span) ** 2))
+    return square**0.5
 
 
 def self_adjoint_position(basis: Array) -> Array:
@@ -150,11 +260,90 @@ def _log_volume(basis: Array) -> float:
     return 2 * float(np.log(np.maximum(values, 1e-300)).sum())
 
 
-def _defect(basis: Array) -> float:
-    """Frobenius norm of the part of the transposed basis that is outside of its span."""
-    span = basis.reshape(len(basis), -1)
-    transposed = basis.transpose(0, 2, 1).reshape(len(basis), -1)
-    return float(np.linalg.norm(transposed - transposed @ span.T @ span))
+# Dominance (theorem 4 of docs/theory/fullness.md) for all data within the error, by real parts (f = 1) or by absolute
+# values of imaginary parts (f = -i): section 9. X in h is proposed by iterations: the trace form of the next X is that
+# of the projection to the eigenspaces of X at the largest real part. Its limits are dual to highest weights. Then an
+# element that acts by 0 on g/h is added, with the largest trace of ad on such elements, so that few of them count.
+
+ATTEMPTS, ITERATIONS, SHIFTS = 6, 4, (0.0, 2.0, 8.0)
+CLUSTER = 1e-2  # real parts that differ by less, relative to the largest modulus, are enclosed together
+
+Interval: TypeAlias = tuple[float, float, int]  # bounds, and the number of eigenvalues between them
+
+
+def real_parts(element: Enclosure) -> list[Interval]:
+    """Intervals that contain the real parts of the eigenvalues of all matrices (d, d) of an element."""
+    matrix = element.center
+    values, vectors = np.linalg.eig(matrix)
+    order = np.argsort(values.real)
+    cuts = np.flatnonzero(np.diff(values.real[order]) > CLUSTER * np.abs(values).max()) + 1
+    basis = np.concatenate([np.linalg.svd(vectors[:, i])[0][:, : len(i)] for i in np.split(order, cuts)], axis=1)
+    condition = float(np.linalg.cond(basis))
+    if not condition < MAX_CONDITION:
+        return [(-np.inf, np.inf, len(matrix))]
+    inverse = np.linalg.inv(basis)
+    outside = inverse @ matrix @ basis
+    blocks, parts = [slice(i[0], i[-1] + 1) for i in np.split(np.arange(len(matrix)), cuts)], []
+    for block in blocks:
+        part = outside[block, block]
+        parts.append(np.linalg.eigvalsh((part + part.conj().T) / 2))
+        outside[block, block] = 0
+    # farther than this from the numerical ranges of the blocks, the blocks minus z are larger than what was left out
+    radius = condition * element.error + spectral_norm(inverse @ element.moves @ basis, 1) + spectral_norm(outside, 1)
+    return [(float(part[0]) - radius, float(part[-1]) + radius, len(part)) for part in parts]
+
+
+def _disjoint(intervals: list[Interval], *, folded: bool) -> list[Interval]:
+    """Unions of intervals that meet, the highest first; if `folded`, of their absolute values."""
+    if folded:
+        intervals = [(max(low, -high, 0.0), max(high, -low), number) for low, high, number in intervals]
+    found: list[Interval] = []
+    for low, high, number in sorted(intervals, key=lambda i: -i[1]):
+        if found and high >= found[-1][0]:
+            before = found.pop()
+            low, high, number = min(low, before[0]), before[1], number + before[2]
+        found.append((low, high, number))
+    return found
+
+
+def _dominates(action: FloatAction, x: Array, f: complex) -> bool:
+    """Whether the element with the coefficients x shows that no pair within the error is full."""
+    x = x / np.linalg.norm(x)
+    parts = _disjoint(real_parts(action.rho.element(x, f)), folded=f != 1)
+    roots = _disjoint(real_parts(action.ad.element(x, -f)), folded=f != 1) if len(parts) > 1 else []
+    above = 0
+    for (low, _, number), (_, high, _) in pairwise(parts):
+        above += number
+        if above + sum(n for _, top, n in roots if top >= low - high) < len(action.lift):
+            return True
+    return False
+
+
+def dominated_vector(action: FloatAction) -> Array | None:
+    """A vector of W of an element that shows that no pair within the error is full, or None if none was found."""
+    matrices, rng, (left, rank) = action.rho.center, np.random.default_rng(0), action.rho.span()
+    acting, still = left[:, :rank], left[:, rank:]
+    traces = np.einsum("ia,ijl,lb,jb->a", still, action.ad.center, still, still, optimize=True)
+    length = float(np.linalg.norm(traces))
+    shifts = SHIFTS if length > CLUSTER * float(np.linalg.norm(action.ad.center)) else SHIFTS[:1]
+    shift = still @ traces / (length or 1.0)
+    dual = np.linalg.pinv(np.einsum("aij,bji->ab", matrices, matrices), rcond=1e-4, hermitian=True)
+    for f in (1.0, -1j) * ATTEMPTS if rank else ():
+        x = acting @ rng.standard_normal(rank)
+        for i in range(ITERATIONS):
+            if not (length := float(np.linalg.norm(x))) > 0:
+                break
+            x = x / length
+            values, vectors = np.linalg.eig(f * np.tensordot(x, matrices, 1))
+            top = values.real >= values.real.max() - CLUSTER * np.abs(values).max()
+            if any(_dominates(action, x + s * shift, f) for s in shifts):
+                vector = vectors[:, top][:, 0]
+                vector = np.asarray((vector / vector[np.abs(vector).argmax()]).real)
+                return vector / np.linalg.norm(vector)
+            projection = vectors[:, top] @ np.linalg.pinv(vectors)[top]
+            x = (f * np.einsum("aij,ji->a", matrices, projection)).real
+            x = dual @ x if i % 2 == 0 else x
+    return None
 
 
 # The least sigma_d(x): sigma_d(x)^2 is the minimum over unit vectors u of sum_a (u . A_a x)^2, which is quadratic in u
@@ -208,36 +397,19 @@ def _improved(basis: Array, x: Array) -> tuple[float, Array]:
 
 # Numerical answer for pairs over float64: full, not full or undecided, with the numbers that it rests on.
 #
-# Let T_i be the traceless parts of rho of an orthonormal basis of h, and e the error of all T_i together, propagated
-# from the error of the data (docs/floats.md). The pair is full if sigma_d(x) > 0 for every x != 0 in V, where
-# sigma_d(x) is the smallest singular value of the matrix with columns T_i x and x. All sizes are relative to the norm
-# of the data, and no matrix is normalized, so T_i below e contribute below e to sigma_d.
-#
-# Full is an open condition, and it is answered if it holds for all data within the error. Singular vectors of the T_i
-# as vectors, with singular values above e, span L0. `transitive_group` finds an inner product |g x| in which the
-# skew-symmetric elements of L0 are transitive on the unit sphere (theorem 2 of docs/theory/fullness.md). For an
-# orthonormal basis K_b of these elements the smallest singular value of the matrix with columns K_b x and x is a
-# constant v. It is found at one x, so nothing depends on how well a minimum was searched. The K_b are combinations of
-# the g T_i g^-1 with coefficients of norm 1 / s, so an error e of the T_i changes them by at most e cond(g) / s. Weyl's
-# inequality for singular values gives: full if v > e cond(g) / s. The answer needs 100 times as much, since errors are
-# propagated to first order.
-#
-# Not full is not an open condition: data nearby are full, so no size of an error can exclude it. It is answered for the
-# data as given, if an x was found with sigma_d(x) at most 2^12 units of round-off. Data that are computed, in a rotated
-# basis say, are off by a few hundred units; a value above this level is not a zero. The basis elements of g can have
-# units of very different sizes, so the same must hold after they are rescaled such that all structure constants have
-# similar sizes. The cases in between are undecided.
+# Not full is also answered for the data as given, if an x was found with sigma_d(x) at most 2^12 units of round-off,
+# relative to the norm of the data. Data that are computed, in a rotated basis say, are off by a few hundred units; a
+# value above this level is not a zero. The basis elements of g can have units of very different sizes, so the same must
+# hold after they are rescaled such that all structure constants have similar sizes.
 
 NumericalVerdict: TypeAlias = NumericallyFull | NumericallyNotFull | NumericallyUndecided
 """A result of `decide_numerically`."""
 
-MIN_GAP = 100.0
-"""Full is answered if sigma_d is at least so many times its error."""
+MIN_GAP = 1.5  # least ratio of sigma_d and its error for the answer full, which leaves room for rounding
+LEAST = 2.0**-46  # least relative error of data, for the same reason
 ROUNDING = 2.0**12 * float(np.finfo(np.float64).eps)
 """Relative size below which sigma_d is zero up to rounding."""
-
-MAX_LOG = 100.0
-"""Largest logarithm of the factor of a basis element."""
+MAX_LOG = 100.0  # largest logarithm of the factor of a basis element
 
 
 def decide_numerically(pair: Pair, *, starts: int = 60, seed: int = 0) -> NumericalVerdict:
@@ -255,9 +427,10 @@ def decide_numerically(pair: Pair, *, starts: int = 60, seed: int = 0) -> Numeri
     Returns
     -------
     NumericallyFull
-        If every pair within the error of the data is full, to first order in the error and with a gap of at least 100.
+        If every pair within the error of the data is full, with a gap of at least 1.5.
     NumericallyNotFull
-        If the rank drops at some eta, up to rounding. Rounding alone can cause it.
+        If no pair within the error of the data is full; or if the rank drops at some eta up to rounding, and the data
+        satisfy the axioms up to rounding. Rounding alone can cause the second.
     NumericallyUndecided
         In all other cases. ``liehom.rationalize`` leads to exact data, which are always decided.
 
@@ -279,43 +452,43 @@ def decide_numerically(pair: Pair, *, starts: int = 60, seed: int = 0) -> Numeri
     rtol = pair.field.rtol if isinstance(pair.field, FloatField) else RR.rtol
     if d <= 1:
         return NumericallyFull(pair, f"dim g/h = {d}, whatever the numbers are", 1.0, 1.0 / rtol)
-    action, size = _traceless_action(pair, rtol)
-    group = transitive_group(action, rtol * size) if size else None
-    if group is not None and _gap(group, rtol * size) >= MIN_GAP:
-        return _full(pair, group, rtol * size)
+    k, action = pair.subalgebra.dimension, float_action(pair)
+    if k + 1 < d:
+        reason = f"dim h + 1 = {k + 1} is less than dim g/h = {d}, whatever the numbers are"
+        return _not_full(pair, action, rtol, np.eye(d)[0], 0.0, reason)
+    for conjugated in (False, True):
+        action = float_action(pair, conjugated=True) if conjugated else action
+        group = transitive_group(action.rho)
+        if group is not None and group.value >= MIN_GAP * group.error:
+            return _full(pair, group, action)
+        if (x := dominated_vector(action)) is not None:
+            value, _ = smallest(action.columns(), x)
+            reason = (
+                f"sigma_d = {value:.1e} relative to the data at an eta, and the eigenvalues of an element of h show a "
+                f"rank below {d} for all data within the error {rtol:.1e}"
+            )
+            return _not_full(pair, action, rtol, x, value, reason)
+    value, x = least_singular_value(action.columns(), starts=starts, seed=seed)
     rounding = min(ROUNDING, rtol)
-    value, x = _least(action, size, starts, seed)
-    if value > rounding or group is not None:
-        return _undecided(pair, group, rtol, size, value, x)
-    if _is_above_rounding(_rescaled(pair), rounding, starts, seed):
-        reason = (
-            f"an eta with sigma_d = {value:.1e} relative to the data was found, but it is not zero up to the rounding "
-            f"level {rounding:.1e} after the basis of g is rescaled, and the error of the data is {rtol:.1e}"
-        )
-        return NumericallyUndecided(pair, reason, value, value / rtol, _eta(pair, x))
+    if group is not None and not group.value * rtol > group.error * rounding:
+        group = None  # rounding alone can cause it
+    if max(value, action.defect) > rounding or group or _is_above_rounding(_rescaled(pair), rounding, starts, seed):
+        return _undecided(pair, group, rtol, action, value, x)
     reason = (
         f"an eta with sigma_d = {value:.1e} relative to the data was found, zero up to the rounding level "
         f"{rounding:.1e}; rounding alone can cause it, since data within the error {rtol:.1e} can be full"
     )
-    return NumericallyNotFull(pair, reason, value, rtol / max(value, 1e-300), _eta(pair, x))
-
-
-def _least(action: Array, size: float, starts: int, seed: int) -> tuple[float, Array]:
-    """The least sigma_d of [T_i x / size, x / sqrt(d)] that was found, and x."""
-    d = action.shape[1]
-    values, basis = orthonormal_span(action, 0.0)
-    columns = [values[:, None, None] * basis / (size or 1.0), np.eye(d)[None] / d**0.5]
-    return least_singular_value(np.concatenate(columns), starts=starts, seed=seed)
+    return _not_full(pair, action, rtol, x, value, reason)
 
 
 def _is_above_rounding(pair: Pair, rounding: float, starts: int, seed: int) -> bool:
     """Whether the data as given are full, or sigma_d is not zero up to rounding."""
     if pair.subalgebra.basis.rank() < pair.subalgebra.dimension:
         return True
-    action, size = _traceless_action(pair, RR.rtol)
-    group = transitive_group(action, rounding * size) if size else None
-    is_full = group is not None and _gap(group, rounding * size) > 1
-    return is_full or _least(action, size, starts, seed)[0] > rounding
+    action = float_action(pair, rtol=rounding)
+    group = transitive_group(action.rho)
+    is_full = group is not None and group.value > group.error
+    return is_full or least_singular_value(action.columns(), starts=starts, seed=seed)[0] > rounding
 
 
 def _rescaled(pair: Pair) -> Pair:
@@ -336,48 +509,37 @@ def _rescaled(pair: Pair) -> Pair:
     return Pair(algebra, Subalgebra(algebra, RR.matrix(rows.tolist(), rows.shape), check=False))
 
 
-def _traceless_action(pair: Pair, rtol: float) -> tuple[Array, float]:
-    """The T_i, shape (k, d, d), and the number that gives their error if it is multiplied by `rtol`."""
-    d, images = pair.dimension, pair.isotropy_matrices()
-    matrices = np.array([a.to_numpy() for a in images]).reshape(-1, d, d)
-    errors = [a.error for a in images if isinstance(a, FloatMatrix)]  # blocks of one matrix, each with its full error
-    size = max(errors) / rtol if errors else float(np.linalg.norm(matrices))
-    return matrices - (np.trace(matrices, axis1=1, axis2=2) / d)[:, None, None] * np.eye(d), size
-
-
-def _gap(group: TransitiveGroup, error: float) -> float:
-    """The value v of the group in units of its error e cond(g) / s."""
-    return group.value * group.smallest / (group.condition * max(error, 1e-300))
-
-
-def _full(pair: Pair, group: TransitiveGroup, error: float) -> NumericallyFull:
-    gap = _gap(group, error)
+def _full(pair: Pair, group: TransitiveGroup, action: FloatAction) -> NumericallyFull:
+    gap = group.value / max(group.error, 1e-300)
     reason = (
-        f"sigma_d = {group.value:.3g} at every eta, {gap:.1e} times its error {group.value / gap:.1e}, since a compact "
+        f"sigma_d = {group.value:.3g} at every eta, {gap:.1e} times its error {group.error:.1e}, since a compact "
         "group of the isotropy is transitive on the directions of g/h"
     )
-    return NumericallyFull(pair, reason, group.value, gap, _eta(pair, group.point))
+    return NumericallyFull(pair, reason, group.value, gap, _eta(action, group.point))
+
+
+def _not_full(pair: Pair, action: FloatAction, rtol: float, x: Array, value: float, reason: str) -> NumericallyNotFull:
+    return NumericallyNotFull(pair, reason, value, rtol / max(value, 1e-300), _eta(action, x))
 
 
 def _undecided(
-    pair: Pair, group: TransitiveGroup | None, rtol: float, size: float, value: float, x: Array
+    pair: Pair, group: TransitiveGroup | None, rtol: float, action: FloatAction, value: float, x: Array
 ) -> NumericallyUndecided:
     if group is not None:
-        gap = _gap(group, rtol * size)
+        gap = group.value / group.error
         reason = (
-            f"sigma_d = {group.value:.3g} at every eta, but its error is {group.value / gap:.1e}, a gap of {gap:.1e} "
-            f"where {MIN_GAP:.0f} is needed"
+            f"sigma_d = {group.value:.3g} at every eta, but its error is {group.error:.1e}, a gap of {gap:.1e} "
+            f"where {MIN_GAP:g} is needed"
         )
-        return NumericallyUndecided(pair, reason, group.value, gap, _eta(pair, group.point))
-    gap = value / rtol
-    reason = f"the least sigma_d found is {value:.1e} relative to the data, {gap:.1e} times their error {rtol:.1e}"
-    if gap < MIN_GAP:
-        reason += f": neither zero up to the rounding level {ROUNDING:.1e} nor {MIN_GAP:.0f} times the error"
-    else:
-        reason += ", but no compact group was found that is transitive on the directions of g/h"
-    return NumericallyUndecided(pair, reason, value, gap, _eta(pair, x))
+        return NumericallyUndecided(pair, reason, group.value, gap, _eta(action, group.point))
+    reason = (
+        f"the least sigma_d found is {value:.1e} relative to the data, which satisfy the axioms up to "
+        f"{action.defect:.1e}: not both zero up to the rounding level {ROUNDING:.1e} in all units of the basis of g; "
+        f"and nothing was found that holds for all data within the error {rtol:.1e}"
+    )
+    return NumericallyUndecided(pair, reason, value, value / rtol, _eta(action, x))
 
 
-def _eta(pair: Pair, x: Array) -> list[float]:
+def _eta(action: FloatAction, x: Array) -> list[float]:
     """Coefficients in the basis of g of the element that x represents."""
-    return [float(v) for v in x @ pair.subalgebra.quotient().lift.to_numpy()]
+    return [float(v) for v in x @ action.lift]

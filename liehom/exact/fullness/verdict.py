@@ -361,10 +361,10 @@ class NumericallyFull(_Numerical):
     Attributes
     ----------
     smallest : float
-        Smallest singular value sigma_d of the matrix with columns K_b x and x, the same at every unit vector x. The
-        K_b are an orthonormal basis of the elements of the traceless rho(h) that preserve an inner product of g/h.
+        Lower bound of the smallest singular value sigma_d of the matrix with columns K_b x and x at every unit vector
+        x. The K_b are an orthonormal basis of the elements of the traceless rho(h) that preserve an inner product.
     gap : float
-        `smallest` divided by `tolerance`, at least 100.
+        `smallest` divided by `tolerance`, at least 1.5.
     tolerance : float
         Error of `smallest`, propagated from the error of the data.
     eta : list of float
@@ -391,7 +391,7 @@ class NumericallyFull(_Numerical):
 
 @final
 class NumericallyNotFull(_Numerical):
-    """Numerically not full: the smallest singular value at some eta is zero up to rounding.
+    """Numerically not full: for all data within their error, or sigma_d at some eta is zero up to rounding.
 
     Attributes
     ----------
@@ -401,7 +401,7 @@ class NumericallyNotFull(_Numerical):
     gap : float
         `tolerance` divided by `smallest`.
     tolerance : float
-        Error of the data, relative to their norm. Other data within this error can be full.
+        Error of the data, relative to their norm. `reason` says whether other data within this error can be full.
     eta : list of float
         Element of g, in its basis, at which `smallest` was found.
 
@@ -438,13 +438,13 @@ class NumericallyUndecided(_Numerical):
     Attributes
     ----------
     smallest, gap, tolerance, eta
-        As in `NumericallyFull` if a transitive group was found, so that `gap` is less than 100. Else `smallest` is the
+        As in `NumericallyFull` if a transitive group was found, so that `gap` is less than 1.5. Else `smallest` is the
         least singular value that was found, as in `NumericallyNotFull`, and `gap` is `smallest` divided by `tolerance`.
 
     Examples
     --------
     >>> import liehom as lh
-    >>> nearly = lh.LieAlgebra({(0, 1): {2: 1.0}, (0, 2): {1: -1e-8}}, dimension=3)
+    >>> nearly = lh.LieAlgebra({(0, 1): {2: 1.0}, (0, 2): {1: -1e-9}}, dimension=3)
     >>> verdict = lh.decide_fullness(lh.Pair(nearly, [[1, 0, 0]]))
     >>> verdict.full is None
     True

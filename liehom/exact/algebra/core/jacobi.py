@@ -193,24 +193,22 @@ PRODUCTS = 6.0  # the error of J is at most this many times the norm of the tabl
 Failure = tuple[tuple[int, int, int], dict[int, Scalar]]
 
 
-def failure_over_floats(table: StructureConstants) -> Failure | None:
-    """Indices (i, j, k) and the coefficients of a cyclic sum that is not zero, or None if the identity holds."""
-    norm = table.norm()
-    if norm == 0:
-        return None
+def failure_over_floats(table: StructureConstants) -> tuple[float, Failure]:
+    """The least relative error of the table with which the identity can hold, and a cyclic sum that is not zero."""
+    norm, n = table.norm(), table.dimension
     if not math.isfinite(norm):
         raise FieldError("the norm of the table leaves the range of float64; multiply it by a power of two, or use QQ")
+    if norm == 0:
+        return 0.0, ((0, 0, 0), {})
     unit = 2.0 ** min(math.frexp(norm)[1], 1023)
     scaled = _Scaled(table, unit)
-    bound = PRODUCTS * (norm / unit) * (table.error / unit)
-    n = table.dimension
     squares, worst = 0.0, (0.0, np.zeros(n), np.zeros(n))
     for x, y in _pairs(n):
         size = norm_of(scaled.defect(x, y))
         squares += size * size
         worst = max(worst, (size, x, y), key=lambda defect: defect[0])
     mean = 2 * squares if n <= ALL_PAIRS else squares / RANDOM_PAIRS
-    return None if math.sqrt(mean) <= bound else scaled.located(worst[1], worst[2], unit)
+    return math.sqrt(mean) / (PRODUCTS * (norm / unit) ** 2), scaled.located(worst[1], worst[2], unit)
 
 
 def _pairs(n: int) -> Iterator[tuple[Array, Array]]:
@@ -287,9 +285,9 @@ def prove_jacobi(table: StructureConstants, names: tuple[str, ...]) -> None:
     if not len(table):
         return
     if isinstance(table.field, FloatField):
-        failure = failure_over_floats(table)
-        if failure is not None:
-            _fail(table, *failure, names)
+        tolerance, failure = failure_over_floats(table)
+        if tolerance * table.norm() > table.error:
+            _fail(table, *failure, names, tolerance)
         return
     n, terms = table.dimension, table.jacobi_terms()
     over_rationals = len(table.parts) == 1
@@ -315,10 +313,12 @@ def _sparse_is_faster(terms: int, n: int) -> bool:
     return terms * SPARSE_PRODUCT < n**4 * DENSE_PRODUCT + n**3 * DENSE_SLICE
 
 
-def _fail(table: StructureConstants, triple: Triple, value: Coefficients, names: tuple[str, ...]) -> NoReturn:
+def _fail(
+    table: StructureConstants, triple: Triple, value: Coefficients, names: tuple[str, ...], tolerance: float = 1.0
+) -> NoReturn:
     i, j, k = triple
     shown = {m: table.field.show(v) for m, v in value.items()}
-    raise JacobiError(triple, shown, (names[i], names[j], names[k]), names)
+    raise JacobiError(triple, shown, (names[i], names[j], names[k]), names, tolerance)
 
 
 def _cyclic_sum(brackets: Brackets, i: int, j: int, k: int) -> Coefficients:

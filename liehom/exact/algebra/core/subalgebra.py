@@ -38,6 +38,7 @@ M = TypeVar("M", bound=Matrix)
 
 SAMPLES = 3  # random combinations that are tried in place of all rows
 SHOWN_ROWS = 8
+WELL_SPANNED = 10.0  # least singular value of rows over floats, in units of their error, with which closure is tested
 GENERATED = "the dimension of a generated subalgebra or ideal"
 
 
@@ -107,7 +108,9 @@ class Subalgebra(Displayed, Immutable):
         table, projection = self.algebra.table, self._projection()
         if not isinstance(self.basis, FloatMatrix) or not self.dimension:
             return table.first_nonzero(self.basis, self.basis, projection)
-        self.basis.rank_decision().require_clear("the span of the rows of the subalgebra")
+        decision = self.basis.rank_decision()
+        if decision.kept < WELL_SPANNED * decision.error:
+            decision.require_clear("the span of the rows of the subalgebra")
         rows = self._rows()  # orthonormal: how long the given rows are, and their angles, do not matter
         if table.first_nonzero(rows, rows, projection) is None:
             return None

@@ -56,8 +56,23 @@ def test_a_jacobi_failure_in_a_large_dense_table() -> None:
 
 
 def test_a_jacobi_failure_over_floats() -> None:
-    with pytest.raises(JacobiError):
+    with pytest.raises(JacobiError) as caught:
         lh.LieAlgebra({(0, 1): {0: 1.0}, (0, 2): {1: 1.0}}, dimension=3)
+    assert "FloatField" not in str(caught.value)
+
+
+@pytest.mark.parametrize("size", [1e-7, 1e-4])
+@pytest.mark.parametrize("n", [4, 7])
+def test_a_jacobi_failure_of_noisy_numbers_names_the_tolerance_that_admits_them(n: int, size: float) -> None:
+    rng = np.random.default_rng(n)
+    table = table_of(lh.so(n)).astype(float)
+    noise = rng.standard_normal(table.shape)
+    table = table + (noise - noise.transpose(1, 0, 2)) * (size * np.linalg.norm(table) / np.linalg.norm(noise))
+    with pytest.raises(JacobiError, match=r"relative error of .*FloatField\(rtol=1e-\d+\)") as caught:
+        lh.LieAlgebra(table)
+    rtol = float(str(caught.value).split("rtol=")[1].rstrip(")"))
+    assert 0.01 * size < rtol <= 10 * size
+    assert lh.LieAlgebra(table, field=lh.FloatField(rtol=rtol)).dimension == n * (n - 1) // 2
 
 
 def test_a_table_that_is_not_antisymmetric() -> None:
