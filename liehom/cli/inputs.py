@@ -332,7 +332,7 @@ def check_plot_file(path: str | None, suffixes: Sequence[str] = PLOT_SUFFIXES) -
 
     check_target(path, force=True)
     if not can_plot():
-        raise InputError("plots need matplotlib: install it with  pip install 'liehom[plot]'")
+        raise InputError("plots need matplotlib: install it with  pip install matplotlib")
 
 
 def can_plot() -> bool:
