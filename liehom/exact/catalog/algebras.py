@@ -199,13 +199,6 @@ def _size(term: Term) -> int:
     return values[0]
 
 
-def _so_star(term: Term) -> IntegerArray:
-    size = _size(term)
-    if size % 2:
-        raise CatalogError(f"so*(2n) is named by its even size; got {term}")
-    return families.so_star(size // 2)
-
-
 def _spiral(term: Term) -> IntegerArray:
     values = _cleared(term)
     if len(values) < 2:
@@ -264,7 +257,6 @@ def _copies(term: Term) -> IntegerArray:
 
 
 _HEADS: dict[str, Callable[[Term], IntegerArray]] = {
-    "so*": _so_star,
     "R": lambda term: np.ones((1, 1, 1), dtype=np.int64),
     "form": lambda term: families.orthogonal(term.integers()),
     "field": lambda term: families.companion_powers(term.integers()),

@@ -20,7 +20,6 @@ from liehom.base.errors import (
     displayed,
 )
 from liehom.base.typing import IntegerArray, VectorLike
-from liehom.exact.algebra import linear as families
 from liehom.exact.algebra.constructions.classical import simple
 from liehom.exact.algebra.core.lie_algebra import LieAlgebra
 from liehom.exact.algebra.linear.closure import lie_closure, square_matrices
@@ -50,8 +49,7 @@ from liehom.exact.scalars.rational import QQ
 
 _CLASSICAL = re.compile(r"(gl|sl|so|su|u|sp|spin)\(([0-9]+)(?:,([0-9]+|[RCH]))?\)")
 _COMPLEX = re.compile(r"s?u\([0-9]+(,[0-9]+)?\)|(gl|sl|so|sp)\([0-9]+,C\)")
-_SO_STAR = re.compile(r"so\*\(([0-9]*[02468])\)")
-_FAMILY = re.compile(r"(e|aff|galilei|upper|strict)\(([0-9]+)\)|(iso)\(([0-9]+),([0-9]+)\)")
+_FAMILY = re.compile(r"(e|aff|galilei|so\*|upper|strict)\(([0-9]+)\)|(iso)\(([0-9]+),([0-9]+)\)")
 
 
 def defining(algebra: LieAlgebra | str) -> Representation:
@@ -149,8 +147,6 @@ def standard_matrices(name: str | None) -> IntegerArray:
         kind, first, second = match.groups()
         parameter = 0 if second is None else int(second) if second.isdigit() else second
         return classical_matrices(kind, int(first), parameter)
-    if match := _SO_STAR.fullmatch(text):
-        return families.so_star(int(match[1]) // 2)
     if match := _FAMILY.fullmatch(text):
         kind, *numbers = filter(None, match.groups())
         return FAMILY_MATRICES[kind](*map(int, numbers))

@@ -37,7 +37,7 @@ from liehom.exact.scalars.exact_field import ExactMatrix, as_exact
 from liehom.exact.scalars.extension import Extension, adjoin_root, real_roots, trivial_extension
 from liehom.exact.scalars.field import Matrix, Scalar
 from liehom.exact.scalars.joint_spectrum import complex_conjugation
-from liehom.exact.scalars.lattices import reduced_rows
+from liehom.exact.scalars.lattices import reduced_rows, smallest_prime
 from liehom.exact.scalars.modular import ModularSpan, left_kernel
 from liehom.exact.scalars.polynomial import Polynomial
 from liehom.exact.scalars.rational import QQ
@@ -110,18 +110,19 @@ def involution_obstruction(centroid: CentroidField) -> str | None:
 # only. If none of these finitely many maps is nilpotent, g is anisotropic at p. Then its automorphisms are inner, while
 # Cartan involutions of the two real forms are outer: docs/theory/structure.md.
 
-PRIMES = (2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53, 59, 61, 67, 71, 73, 79, 83, 89, 97)
+LARGEST = 100  # primes below this one are tried
 CLASSES = 10_000  # elements of M_i / M_(i+1) with one leading coefficient
 
 
 def local_obstruction(algebra: LieAlgebra) -> str | None:
-    """The reason why no Cartan involution is over QQ, from a prime below 100, or None; in the basis of an order."""
+    """The reason why no Cartan involution is over QQ, from a small prime, or None; in the basis of an order."""
     m, killing = isqrt(algebra.dimension + 1), as_exact(algebra.killing_form()).primitive()
     if m < 3 or m**2 != algebra.dimension + 1 or real_form(algebra) not in (f"sl({m},R)", f"sl({m // 2},H)"):
         return None
     determinant = int(killing.determinant())
-    for p in PRIMES:
-        if determinant % p == 0 and _is_anisotropic(algebra, killing, p):
+    for p in range(2, LARGEST):
+        prime = determinant % p == 0 and smallest_prime(p) == p
+        if prime and _is_anisotropic(algebra, killing, p):
             return f"over the {p}-adic numbers it is the part of trace 0 of a division algebra of degree {m}"
     return None
 

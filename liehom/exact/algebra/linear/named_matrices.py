@@ -275,7 +275,7 @@ def _half(build: Callable[[int], IntegerArray]) -> Callable[[int], IntegerArray]
 
     def by_size(size: int) -> IntegerArray:
         if size % 2:
-            raise InputError(f"sp(2n,R) and sp(2n,C) are named by their even size 2n; got {size}")
+            raise InputError(f"sp(2n,R), sp(2n,C) and so*(2n) are named by their even size 2n; got {size}")
         return build(size // 2)
 
     return by_size
@@ -304,10 +304,11 @@ FAMILY_MATRICES: dict[str, Callable[..., IntegerArray]] = {
     "iso": lambda p, q: linear_bases.motions(linear_bases.so(p, q)),
     "aff": lambda n: linear_bases.motions(linear_bases.gl(n)),
     "galilei": linear_bases.galilei,
+    "so*": _half(linear_bases.so_star),
     "upper": linear_bases.triangular,
     "strict": lambda n: linear_bases.triangular(n, 1),
 }
-"""Builders of the matrices of algebras of motions and of triangular matrices, by the heads of their names."""
+"""Builders of the matrices of algebras that have no scalars in their names, by the heads of the names."""
 
 EXCEPTIONAL_MATRICES: dict[str, Callable[[], IntegerArray]] = {
     "g2(2)": lambda: g2(SPLIT_OCTONIONS), "g2": g2, "f4(4)": lambda: f4(parameters=SPLIT_OCTONIONS), "f4": f4,
