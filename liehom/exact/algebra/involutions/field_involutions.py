@@ -119,7 +119,7 @@ def local_obstruction(algebra: LieAlgebra) -> str | None:
     m, killing = isqrt(algebra.dimension + 1), as_exact(algebra.killing_form()).primitive()
     if m < 3 or m**2 != algebra.dimension + 1 or real_form(algebra) not in (f"sl({m},R)", f"sl({m // 2},H)"):
         return None
-    determinant = int(killing.determinant())
+    determinant = int(QQ.convert(killing.determinant()).p)
     for p in range(2, LARGEST):
         prime = determinant % p == 0 and smallest_prime(p) == p
         if prime and _is_anisotropic(algebra, killing, p):

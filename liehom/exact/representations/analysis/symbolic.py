@@ -19,7 +19,7 @@ from liehom.exact.representations.core.representation import Representation
 from liehom.exact.scalars import grammar
 from liehom.exact.scalars.complex_parts import sympy_number
 from liehom.exact.scalars.exact_field import ExactMatrix, as_exact
-from liehom.exact.scalars.field import Matrix
+from liehom.exact.scalars.field import Matrix, MatrixLike
 from liehom.exact.scalars.polynomial_matrix import PolynomialMatrix, expression_of, polynomial_matrix
 from liehom.exact.scalars.rational import QQ
 
@@ -105,7 +105,7 @@ class SymbolicIsotropy:
         return self.basis.subs(values)
 
 
-def symbolic_isotropy(rho: Representation, point: VectorLike) -> SymbolicIsotropy:
+def symbolic_isotropy(rho: Representation, point: VectorLike | MatrixLike) -> SymbolicIsotropy:
     """Implements `Representation.symbolic_isotropy`."""
     import sympy
 
