@@ -117,7 +117,9 @@ CLASSES = 10_000  # elements of M_i / M_(i+1) with one leading coefficient
 def local_obstruction(algebra: LieAlgebra) -> str | None:
     """The reason why no Cartan involution is over QQ, from a small prime, or None; in the basis of an order."""
     m, killing = isqrt(algebra.dimension + 1), as_exact(algebra.killing_form()).primitive()
-    if m < 3 or m**2 != algebra.dimension + 1 or real_form(algebra) not in (f"sl({m},R)", f"sl({m // 2},H)"):
+    if m < 3 or m**2 != algebra.dimension + 1 or algebra.table.den != 1:
+        return None
+    if real_form(algebra) not in (f"sl({m},R)", f"sl({m // 2},H)"):
         return None
     determinant = int(QQ.convert(killing.determinant()).p)
     for p in range(2, LARGEST):
