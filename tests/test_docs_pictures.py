@@ -7,6 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from tests.test_docs import DOCS
@@ -64,3 +65,13 @@ def test_the_program_of_the_gallery_draws_the_picture_of_the_page(
         drawn = io.BytesIO()
         namespace["figure"].savefig(drawn, format="svg", metadata=UNDATED[".svg"])
     assert drawn.getvalue() == (tmp_path / "page.svg").read_bytes()
+
+
+def test_every_line_of_the_quartics_is_in_the_legend_by_its_equation(pictures: Any) -> None:
+    figure = importlib.import_module("pictures.strata").binary_quartics([f"C{i}" for i in range(8)])
+    drawn = [line for line in figure.axes[0].lines if len(line.get_xdata())]
+    lines = {str(line.get_label()): (np.asarray(line.get_xdata()), np.asarray(line.get_ydata())) for line in drawn}
+    assert len(lines) == 4 and set(lines) <= {text.get_text() for text in figure.axes[0].get_legend().get_texts()}
+    for label, (a, b) in lines.items():
+        assert np.allclose(b, 0 if label.startswith(("b = 0", "x⁴")) else 9 * a**2)
+        assert ("a > 0" not in label or min(a) >= 0) and ("a < 0" not in label or max(a) <= 0)

@@ -17,7 +17,7 @@ ROOT = Path(__file__).resolve().parent.parent
 
 LIMIT_SECONDS = 0.3
 TRIALS = 8
-LATE = ("scipy", "sympy", "networkx", "matplotlib", "jax", "llvmlite", "typer", "rich")
+LATE = ("numpy", "flint", "scipy", "sympy", "networkx", "matplotlib", "jax", "llvmlite", "typer", "rich")
 
 TIMED_IMPORT = "import time; t = time.process_time(); import liehom; print(time.process_time() - t)"
 LOADED = "import sys, liehom; print(*sorted({name.partition('.')[0] for name in sys.modules}))"
@@ -46,6 +46,17 @@ def test_import_loads_none_of_the_large_libraries() -> None:
     loaded = set(python(LOADED).split())
     assert "liehom" in loaded
     assert not loaded.intersection(LATE), f"imported at start: {sorted(loaded.intersection(LATE))}"
+
+
+def test_no_command_installs_liehom_by_name_since_it_is_not_published() -> None:
+    texts = [path for folder in ("liehom", "docs", "examples") for path in (ROOT / folder).rglob("*.*")]
+    texts = [
+        path
+        for path in (ROOT / "README.md", ROOT / "CONTRIBUTING.md", *texts)
+        if path.suffix in (".md", ".py", ".ipynb")
+    ]
+    assert len(texts) > 300
+    assert [path.name for path in texts if "liehom[" in path.read_text(encoding="utf-8")] == []
 
 
 def test_version_is_the_one_of_the_package() -> None:

@@ -71,18 +71,10 @@ def binary_quartics(colours: Sequence[str]) -> Any:
     axes.contourf(a, b, roots, levels=[-1, 1, 3, 5], colors=shades, alpha=0.22)
     for colour, text in zip(shades, ("no real root", "2 real roots", "4 real roots"), strict=True):
         axes.plot([], [], color=colour, alpha=0.4, linewidth=6, label=text)
-    line = np.linspace(-0.4082, 0.4082, 200)
-    axes.plot(line, 9 * line**2, color=colours[1], linewidth=2.0, label="double roots: b = 9a²")
-    axes.axhline(0, color=colours[1], linewidth=2.0)
-    positive = np.linspace(0.0, 0.4082, 100)
-    axes.plot(
-        positive,
-        9 * positive**2,
-        color=colours[2],
-        linewidth=3.2,
-        label="(x² + 3ay²)²: isotropy so(2) for a > 0, so(1,1) for a < 0",
-    )
-    axes.plot(-positive, 9 * positive**2, color=colours[2], linewidth=3.2, linestyle="--")
+    axes.axhline(0, color=colours[1], linewidth=2.0, label="b = 0: x² is a factor, a double root")
+    size = np.linspace(0.0, 0.4082, 100)
+    for sign, line, text in ((1, "-", "a > 0: (x² + 3ay²)², isotropy so(2)"), (-1, "--", "a < 0: isotropy so(1,1)")):
+        axes.plot(sign * size, 9 * size**2, color=colours[2], linewidth=3.2, linestyle=line, label=f"b = 9a², {text}")
     axes.plot(0, 0, "o", color=colours[6], markersize=8, label="x⁴: nilpotent isotropy", zorder=4)
     axes.set(xlim=(-1.5, 1.5), ylim=(-1.5, 1.5), xlabel="a", ylabel="b", title="x⁴ + 6a x²y² + b y⁴")
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.14), fontsize=8)

@@ -189,9 +189,7 @@ class _Zarr(Store):
         try:
             import zarr
         except ImportError:
-            raise InputError(
-                f"the store {path!r} is a zarr group: install liehom[distributed], or leave .zarr"
-            ) from None
+            raise InputError(f"the store {path!r} is a zarr group: pip install zarr, or leave .zarr") from None
         self.path = path
         if fingerprint is None and not os.path.isdir(path):
             raise _no_store(path)

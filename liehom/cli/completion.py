@@ -72,13 +72,19 @@ def _examples(incomplete: str, suffixes: tuple[str, ...]) -> list[str]:
 
 def pair(incomplete: str) -> list[str]:
     """Pairs: names of the catalogue and JSON files."""
-    return [*_beginning(incomplete, pair_names()), *files(".json")(incomplete)]
+    return [*_named(incomplete, pair_names()), *files(".json")(incomplete)]
 
 
 def anything(incomplete: str) -> list[str]:
     """Algebras, types, pairs and files that `describe` reads."""
-    names = [*ALGEBRAS, *TYPES, *pair_names()]
-    return [*_beginning(incomplete, names), *files(".json", ".g", ".gap", ".sage")(incomplete)]
+    names = [*_named(incomplete, ALGEBRAS), *_beginning(incomplete, TYPES), *_named(incomplete, pair_names())]
+    return [*names, *files(".json", ".g", ".gap", ".sage")(incomplete)]
+
+
+def _named(incomplete: str, names: Iterable[str]) -> list[str]:
+    """Names that begin with a word in any letters, which stay as they are typed."""
+    size = len(incomplete)
+    return [incomplete + name[size:] for name in names if name[:size].casefold() == incomplete.casefold()]
 
 
 def _beginning(incomplete: str, known: Iterable[str]) -> list[str]:

@@ -166,9 +166,7 @@ def object_argument(text: str) -> LieAlgebra | Pair | Representation:
 
 
 def _named(text: str) -> LieAlgebra | Pair:
-    from liehom.exact.algebra.constructions.classical import simple
     from liehom.exact.algebra.roots.chevalley import chevalley
-    from liehom.exact.algebra.roots.real_form import RealForm
     from liehom.exact.catalog.algebras import algebra
     from liehom.exact.catalog.names import Quotient, Term, parse
     from liehom.exact.catalog.pairs import pair
@@ -176,16 +174,7 @@ def _named(text: str) -> LieAlgebra | Pair:
     tree = parse(text)
     if isinstance(tree, Quotient) or (isinstance(tree, Term) and tree.head == "sym" and tree.after):
         return pair(text)
-    try:
-        return algebra(text)
-    except CatalogError as unknown:
-        try:
-            if _TYPE.fullmatch(text):
-                return chevalley(text)
-            form = RealForm.of_name(text)
-            return simple(form.type, form.name)
-        except CatalogError:
-            raise unknown from None
+    return chevalley(text) if _TYPE.fullmatch(text) else algebra(text)
 
 
 def row_values(text: str, what: str) -> list[Any]:
@@ -343,7 +332,7 @@ def check_plot_file(path: str | None, suffixes: Sequence[str] = PLOT_SUFFIXES) -
 
     check_target(path, force=True)
     if not can_plot():
-        raise InputError("plots need matplotlib: install it with  pip install 'liehom[plot]'")
+        raise InputError("plots need matplotlib: install it with  pip install matplotlib")
 
 
 def can_plot() -> bool:

@@ -124,7 +124,7 @@ def _checked_formats(wanted: Wanted) -> tuple[str, ...]:
     if wrong:
         raise InputError(f"plots have no format {wrong[0]!r}, expected some of {','.join(FORMATS)}, or none")
     if not can_plot():
-        raise InputError("plots need matplotlib: install it with  pip install 'liehom[plot]',  or use --format none")
+        raise InputError("plots need matplotlib: install it with  pip install matplotlib,  or use --format none")
     return tuple(dict.fromkeys(formats))
 
 

@@ -553,7 +553,7 @@ def pair_page(pair: Pair | Verdict, path: str | os.PathLike[str] | None = None) 
 
     Notes
     -----
-    Pictures need matplotlib (the extra `liehom[plot]`); without it, the page has a sentence instead of each. Long
+    Pictures need matplotlib; without it, the page has a sentence instead of each. Long
     tables are cut, and a line below says so. The files in the page, which its links save, are complete.
 
     Examples

@@ -31,6 +31,7 @@ from liehom.exact.fullness.verdict import (
     NumericallyNotFull,
     NumericallyUndecided,
 )
+from liehom.exact.orbits.cone import RelativeInvariant
 from liehom.exact.orbits.strata import Stratum
 from liehom.exact.representations.analysis.decomposition import Decomposition
 from liehom.exact.representations.core.pair import Pair
@@ -272,8 +273,11 @@ def _formula(obj: object, most: int | None) -> str | None:
 def _(obj: FailureReport, most: int | None) -> str:
     if obj.generic.holds is False:
         return words("(6.3) holds for no ") + r"\psi"
+    if not (obj.parts or obj.not_searched):
+        return words("(6.3) holds for every ") + r"\psi"
     parts = [
-        f"{polynomial_latex(str(x.data))} = 0" if x.kind == "hypersurface" else words(x.description) for x in obj.parts
+        f"{polynomial_latex(str(x.data))} = 0" if isinstance(x.data, RelativeInvariant) else words(x.description)
+        for x in obj.parts
     ]
     lines = [f"&{part}" for part in parts[:most]] or [f"&{words('a cone')}"]
     return words("(6.3) fails on ") + r"\;" + aligned([*lines, *dots(len(parts), most)])

@@ -1,4 +1,4 @@
-"""Plots of orders, errors, trajectories, strata, failure cones, roots and diagrams, by matplotlib (`liehom[plot]`).
+"""Plots of orders, errors, trajectories, strata, failure cones, roots and diagrams, by matplotlib.
 
 * `canvas` makes figures, colours and files, and is the one module that loads matplotlib.
 * `convergence_plot` draws errors over step sizes, `work_precision_plot` errors over costs, `drift_plot` errors of first

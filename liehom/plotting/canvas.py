@@ -75,7 +75,7 @@ def matplotlib_module(name: str) -> Any:
     try:
         import_module("matplotlib")
     except ModuleNotFoundError:
-        raise InputError("plots need matplotlib: install it with  pip install 'liehom[plot]'") from None
+        raise InputError("plots need matplotlib: install it with  pip install matplotlib") from None
     return import_module(f"matplotlib.{name}" if name else "matplotlib")
 
 

@@ -127,7 +127,7 @@ def test_floats_are_numerical() -> None:
         ("so(4,", "not a name"),
         ("so4", "not the name of an algebra"),
         ("so(4)/so(9)", "not the name of a pair"),
-        ("E9", "not the name of an algebra"),
+        ("E9", "not the type of a simple Lie algebra"),
         ("missing.json", "cannot be read"),
         ("missing.g", "cannot be read"),
         ("missing.sage", "cannot be read"),

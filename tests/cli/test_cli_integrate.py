@@ -279,7 +279,7 @@ def test_places_where_nothing_can_be_written_are_refused_before_the_work(
 @pytest.mark.parametrize("command", ["integrate", "order"])
 def test_without_matplotlib_the_extra_is_named_before_the_work(command: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(cli_problem, "find_spec", lambda name: None)
-    refused(liehom(command, RIGID, "--plot", "picture.png"), "liehom[plot]", "matplotlib")
+    refused(liehom(command, RIGID, "--plot", "picture.png"), "pip install matplotlib")
     assert written() == []
 
 

@@ -79,6 +79,17 @@ def test_words_are_completed(typed: list[str], found: list[str], folder: Path, m
     assert result.stdout.split() == found
 
 
+def test_names_are_completed_in_any_letters_and_keep_them() -> None:
+    assert completion.pair("SO(12)") == ["SO(12)/so(11)"]
+    assert (
+        "SU(2,1)" in completion.anything("SU(2")
+        and "E8" in completion.anything("E")
+        and "e8" not in completion.anything("e")
+    )
+    for word in completion.pair("SP("):
+        lh.pair(word)
+
+
 def test_completion_is_quick_and_imports_no_mathematics(shell_environment: dict[str, str]) -> None:
     words = {"COMP_WORDS": "liehom\nfullness\nso", "COMP_CWORD": "2"}
     asked = {**shell_environment, "_LIEHOM_COMPLETE": "complete_bash", **words}

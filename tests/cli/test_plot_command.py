@@ -126,4 +126,4 @@ def test_without_matplotlib_the_extra_is_named(monkeypatch: pytest.MonkeyPatch) 
     monkeypatch.setattr("liehom.cli.inputs.find_spec", lambda name: None)
     result = liehom("plot", "dynkin", "G2", "-o", "x.png")
     assert (result.exit_code, result.stdout) == (2, "")
-    assert "liehom[plot]" in result.stderr
+    assert "pip install matplotlib" in result.stderr

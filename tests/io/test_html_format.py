@@ -264,6 +264,15 @@ def test_a_report_of_a_pair_without_directions_says_so() -> None:
     verdict = lh.decide_fullness(lh.pair("su(3)/su(2)"))
     assert isinstance(verdict, lh.fullness.NotFull)
     assert lh.latex(verdict.where_it_fails()) == r"\text{(6.3) holds for no }\psi"
+    point = lh.decide_fullness(lh.pair("so(3)/so(3)"))
+    assert isinstance(point, lh.fullness.Full)
+    assert lh.latex(point.where_it_fails()) == r"\text{(6.3) holds for every }\psi"
+
+
+def test_a_report_shows_the_equation_of_zeros_of_codimension_2() -> None:
+    verdict = lh.decide_fullness(lh.pair("sl(3,C)/P{1,2}"))
+    assert isinstance(verdict, lh.fullness.NotFull)
+    assert r"&x_{2}^{2} + x_{3}^{2} = 0 \\" in lh.latex(verdict.where_it_fails()).splitlines()
 
 
 def test_most_cuts_and_none_does_not() -> None:

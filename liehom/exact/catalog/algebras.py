@@ -7,12 +7,13 @@ Linear Lie algebras:
   forms           form(d1,...,dn): so of the diagonal quadratic form
   commutative     field(c0,...,c_(n-1)): Q[t]/(t^n + ... + c0) on itself; diag(...), spiral(a,b), R (scalars)
   triangular      upper(n), strict(n)
+  motions         e(n), iso(p,q), aff(n) on the vectors (x, 1), affine(X) too; galilei(n) on the vectors (x, t, 1)
   from others     dual(X), tensor(X,Y), blocks(X,Y,...), copies(k,X), Sk(X), Lk(X); sym(n): so(n) on Sym(n)
   with scalars    X+R, X+u(1), X+sp(1), X+sl(1,Q(a,b)), X+spiral(a,b): scalars that commute with X, spiral(a,b)
                   the one matrix a + bJ with J the complex structure, for fractions times their common denominator
 Kinematical, conformal, solvable, free nilpotent families:
-  iso(p,q): poincare(p, q); galilei(n), bargmann(n) without and with mass; schroedinger(n)
-  conformal(p), conformal(p,q), aff(n), filiform(n), oscillator(n), free_nilpotent(g,k)
+  bargmann(n): galilei(n) with mass; schroedinger(n); conformal(p), conformal(p,q)
+  filiform(n), oscillator(n), free_nilpotent(g,k)
   bianchi(I), ..., bianchi(VI;a), bianchi(VII;a), A1,1, ..., A4,12 with parameters as in A4,2(1/2)
 """
 
@@ -21,7 +22,9 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 from fractions import Fraction
+from typing import TypeVar
 
 import numpy as np
 
@@ -30,13 +33,15 @@ from liehom.base.errors import CatalogError, InputError, LimitError
 from liehom.base.typing import IntegerArray
 from liehom.exact.algebra import linear as families
 from liehom.exact.algebra.constructions import families as constructed
+from liehom.exact.algebra.constructions.classical import simple
 from liehom.exact.algebra.constructions.sums import direct_sum, semidirect_sum
 from liehom.exact.algebra.core.lie_algebra import LieAlgebra
 from liehom.exact.algebra.linear.closure import lie_closure
-from liehom.exact.algebra.linear.linear_bases import require_basis, stack
+from liehom.exact.algebra.linear.linear_bases import motions, require_basis, stack
 from liehom.exact.algebra.linear.named_matrices import (
     CLASSICAL_KINDS,
     EXCEPTIONAL_MATRICES,
+    FAMILY_MATRICES,
     classical_matrices,
     exceptional_matrices,
     linear_lie_algebra,
@@ -44,6 +49,7 @@ from liehom.exact.algebra.linear.named_matrices import (
 from liehom.exact.catalog.names import Expression, Item, Sum, Term, Value, parse_expression, terms, unknown
 from liehom.exact.representations.core.representation import Representation
 
+T = TypeVar("T")
 EXCEPTIONAL_KINDS = frozenset(name.partition("(")[0] for name in EXCEPTIONAL_MATRICES)
 
 
@@ -58,8 +64,9 @@ def linear_matrices(tree: Expression) -> IntegerArray:
 
 def is_linear(tree: Expression) -> bool:
     """Whether all heads of a parsed name denote linear Lie algebras."""
-    heads = CLASSICAL_KINDS | EXCEPTIONAL_KINDS | _HEADS.keys()
-    return all(t.head in heads or re.fullmatch(r"[SL]\d+", t.head) for t in terms(tree))
+    heads = CLASSICAL_KINDS | _HEADS.keys()
+    known = (t.head in heads or str(t) in EXCEPTIONAL_MATRICES or re.fullmatch(r"[SL]\d+", t.head) for t in terms(tree))
+    return all(known)
 
 
 def scalar_parameters(term: Term) -> tuple[int, ...]:
@@ -192,13 +199,6 @@ def _size(term: Term) -> int:
     return values[0]
 
 
-def _so_star(term: Term) -> IntegerArray:
-    size = _size(term)
-    if size % 2:
-        raise CatalogError(f"so*(2n) is named by its even size; got {term}")
-    return families.so_star(size // 2)
-
-
 def _spiral(term: Term) -> IntegerArray:
     values = _cleared(term)
     if len(values) < 2:
@@ -221,6 +221,13 @@ def _tensor(term: Term) -> IntegerArray:
     if len(term.items) != 2:
         raise CatalogError(f"tensor takes two linear Lie algebras, got {term}")
     return families.tensor_sum(*(linear_matrices(_expression(x)) for x in term.items))
+
+
+def _of_family(term: Term) -> IntegerArray:
+    values, wanted = term.integers(), 2 if term.head == "iso" else 1
+    if len(values) != wanted:
+        raise CatalogError(f"{term.head} takes {wanted} integer(s), got {term}")
+    return _built(term, FAMILY_MATRICES[term.head], *values)
 
 
 def _blocks(term: Term) -> IntegerArray:
@@ -250,14 +257,13 @@ def _copies(term: Term) -> IntegerArray:
 
 
 _HEADS: dict[str, Callable[[Term], IntegerArray]] = {
-    "so*": _so_star,
     "R": lambda term: np.ones((1, 1, 1), dtype=np.int64),
     "form": lambda term: families.orthogonal(term.integers()),
     "field": lambda term: families.companion_powers(term.integers()),
     "diag": _diagonal,
     "spiral": _spiral,
-    "upper": lambda term: families.triangular(_size(term)),
-    "strict": lambda term: families.triangular(_size(term), 1),
+    **dict.fromkeys(FAMILY_MATRICES, _of_family),
+    "affine": lambda term: motions(linear_matrices(_one(term))),
     "dual": lambda term: -linear_matrices(_one(term)).transpose(0, 2, 1),
     "tensor": _tensor,
     "blocks": _blocks,
@@ -285,7 +291,7 @@ def family_algebra(term: Term) -> LieAlgebra:
     return _built(term, build, *values)
 
 
-def _built(term: Term, build: Callable[..., LieAlgebra], *values: Value | str) -> LieAlgebra:
+def _built(term: Term, build: Callable[..., T], *values: Value | str) -> T:
     try:
         return build(*values)
     except (CatalogError, LimitError):
@@ -303,6 +309,8 @@ def _bianchi(term: Term) -> LieAlgebra:
 
 _NUMBERED = re.compile(r"A(\d),(\d+)", re.ASCII)
 _FAMILIES: dict[str, tuple[Callable[..., LieAlgebra], int, int]] = {
+    "e": (constructed.euclidean, 1, 1),
+    "heisenberg": (constructed.heisenberg, 1, 1),
     "iso": (constructed.poincare, 2, 2),
     "galilei": (constructed.galilei, 1, 1),
     "bargmann": (constructed.bargmann, 1, 1),
@@ -319,7 +327,7 @@ _FAMILIES: dict[str, tuple[Callable[..., LieAlgebra], int, int]] = {
 EXAMPLES = (
     "so(3)", "so(3,1)", "so(3,C)", "so*(6)", "su(3)", "su(2,1)", "u(2)", "sp(3)", "sp(2,1)", "sp(4,R)", "sp(4,C)",
     "sl(3)", "sl(3,C)", "sl(2,H)", "gl(2)", "spin(7)", "spin(9,1)", "g2", "g2(2)", "f4", "f4(-20)", "f4(4)",
-    "e6(-26)", "e6(6)", "upper(3)", "heisenberg(1)", "e(3)", "R^2", "aff(1)", "affine(so(3))",
+    "e6(-26)", "e6(6)", "e7(-25)", "e8(8)", "upper(3)", "heisenberg(1)", "e(3)", "R^2", "aff(1)", "affine(so(3))",
     "affine(su(2)+spiral(1,1))", "iso(3,1)", "galilei(3)", "bargmann(3)", "schroedinger(3)", "conformal(3,1)",
     "filiform(5)", "oscillator(1)", "free_nilpotent(2,3)", "bianchi(VII)", "bianchi(VII;1/2)", "A4,1", "A4,2(1/2)",
     "so(3)+sl(2)",
@@ -371,7 +379,8 @@ def representation(name: str) -> Representation:
     """
     tree = parse_expression(name)
     if not is_linear(tree):
-        raise unknown(name, EXAMPLES, "representation")
+        known = [other for other in EXAMPLES if is_linear(parse_expression(other))]
+        raise unknown(str(tree), known, "representation")
     return representation_of(linear_matrices(tree), str(tree))
 
 
@@ -381,11 +390,6 @@ def algebra_of(tree: Expression) -> LieAlgebra:
         return direct_sum(*map(algebra_of, tree.terms), name=str(tree))
     if tree.head == "0" or tree.head.startswith("R"):
         return constructed.abelian(_power(tree))
-    if tree.head in ("e", "heisenberg"):
-        values = tree.integers()
-        if len(values) != 1 or tree.after:
-            raise CatalogError(f"{tree.head} takes one integer, got {tree}")
-        return (constructed.euclidean if tree.head == "e" else constructed.heisenberg)(values[0])
     if is_family(tree):
         return family_algebra(tree)
     if tree.head == "affine" and len(tree.items) == 1 and not isinstance(tree.items[0], int | Fraction):
@@ -393,6 +397,8 @@ def algebra_of(tree: Expression) -> LieAlgebra:
     if tree.head == "sym" and not tree.after:
         return algebra_of(Term("so", tree.items))
     if not is_linear(tree):
+        with suppress(CatalogError):
+            return simple(str(tree))
         raise unknown(str(tree), EXAMPLES, "algebra")
     return linear_lie_algebra(linear_matrices(tree), str(tree))
 

@@ -1,7 +1,7 @@
 """The grammar of catalogue names: from strings to trees and back.
 
     pair    =  sum '/' sum  |  term                 so(4)/so(3), sp(3)/sp(2)+sp(1), affine(g2), sym(4;3,1)
-    sum     =  term { '+' term }
+    sum     =  term { ('+' | 'x' | '') term }         ('' after ')' only: Sp(2)Sp(1))
     term    =  head [ '(' items [ ';' values ] ')' ]  |  'A' digit ',' digits [ '(' values ')' ]
     items   =  item { ',' item },   item = value | sum
     values  =  value { ',' value }
@@ -9,9 +9,9 @@
     head    =  letters and digits, perhaps a final '*'  |  'R^' digits  |  '0' (not as an item: there it is a number)
             |  'P{' digits { ',' digits } '}'
 
-Blanks are ignored. Printing a tree and parsing the string gives the same tree. `parse` drops parameters that are the
-default, so 'sl(3,R)' prints as 'sl(3)' and 'so(3,0)' as 'so(3)', and replaces other spellings: 'schrodinger(3)' prints
-as 'schroedinger(3)', 'poincare(3)' as 'iso(3,1)'.
+Blanks are ignored, and capitals are not distinguished. Printing a tree and parsing the string gives the same tree.
+`parse` drops parameters that are the default, so 'sl(3,R)' prints as 'sl(3)' and 'so(3,0)' as 'so(3)', and replaces
+other spellings: 'schrodinger(3)' prints as 'schroedinger(3)', 'poincare(3)' as 'iso(3,1)', 'SE(3)' as 'e(3)'.
 """
 
 from __future__ import annotations
@@ -25,15 +25,16 @@ from typing import TypeAlias, TypeVar, final
 
 from liehom.base.budget import small_integer, within
 from liehom.base.errors import CatalogError, displayed, shown
-from liehom.exact.algebra.linear.named_matrices import CLASSICAL_KINDS
+from liehom.exact.algebra.linear.named_matrices import CLASSICAL_KINDS, SPELLINGS
 
 T = TypeVar("T")
 
-SPELLINGS = {"schrodinger": "schroedinger", "poincare": "iso", "euclidean": "e"}
-"""Other spellings of heads."""
 MAX_LIKENESS = 100
 """Characters of the longest name to which similar names are looked for."""
-_TOKEN = re.compile(r"\s*(?:(R\^\d+|P\{[\d\s,]*\})|([A-Za-z]\w*\*?)|(-?\d+)|([/+(),;]))")
+_CAPITALS = re.compile(r"[RCHQB]|P\d*|[SL]\d+|A\d|[IVX]+", re.IGNORECASE)
+_TYPE = re.compile(r"\s*[A-G]\d{1,2}\s*", re.ASCII)
+_TIMES = re.compile(r"(?<=[)\s])[xX](?=[A-Za-z\s])|[×⊕]")
+_TOKEN = re.compile(r"\s*(?:([Rr]\^\d+|[Pp]\{[\d\s,]*\})|([A-Za-z]\w*\*?)|(-?\d+)|([/+(),;]))")
 
 
 @final
@@ -114,6 +115,9 @@ def parse_expression(name: str) -> Expression:
     tree = parse(name)
     if isinstance(tree, Quotient):
         raise CatalogError(f"{shown(name)!r} is the name of a pair, not of an algebra")
+    if _TYPE.fullmatch(name):
+        read = f"read as a type by lh.simple({name.strip()!r})"
+        raise CatalogError(f"{name.strip()!r} is {read}, not here; names are such as g2, so(3,2), A4,1")
     return tree
 
 
@@ -136,12 +140,22 @@ def canonical(term: Term) -> Term:
     """The term in its usual spelling, without a second parameter that is the default."""
     if term.head in SPELLINGS:
         added = (1,) if term.head == "poincare" and len(term.items) == 1 else ()
-        return Term(SPELLINGS[term.head], term.items + added, term.after)
+        return canonical(Term(SPELLINGS[term.head], term.items + added, term.after))
+    if len(term.items) == 1 and isinstance(size := term.items[0], int) and not term.after:
+        if term.head == "abelian":
+            return flat(size)
+        if term.head in ("affine", "iso"):
+            return Term({"affine": "aff", "iso": "e"}[term.head], term.items)
     if len(term.items) == 2 and not term.after:
         silent: Item = Term("R") if term.head in ("gl", "sl") else 0
         if term.items[1] == silent and term.head in CLASSICAL_KINDS:
             return Term(term.head, term.items[:1])
     return term
+
+
+def flat(n: int) -> Term:
+    """The term of R^n."""
+    return Term("0" if n == 0 else "R" if n == 1 else f"R^{n}")
 
 
 class _Parser:
@@ -152,6 +166,7 @@ class _Parser:
         self.tokens: list[tuple[str, int]] = []
         self.at = self.depth = 0
         position = 0
+        text = _TIMES.sub("+", text)
         while text[position:].strip():
             match = _TOKEN.match(text, position)
             if match is None:
@@ -192,11 +207,14 @@ class _Parser:
         return tree
 
     def sum(self) -> Expression:
-        summands = self.separated(self.term, "+")
-        return Sum(summands) if len(summands) > 1 else summands[0]
+        summands = [self.term()]
+        while self.accept("+") or (self.peek()[:1].isalpha() and self.text[self.position() - 1] == ")"):
+            summands.append(self.term())
+        return Sum(tuple(summands)) if len(summands) > 1 else summands[0]
 
     def term(self) -> Term:
         head = self.peek()
+        head = head.upper() if _CAPITALS.fullmatch(head) or head[1:2] in ("^", "{") else head.lower()
         if head == "0":
             self.at += 1
             return Term("0")
@@ -204,8 +222,7 @@ class _Parser:
             raise self.error("expected a name such as so(3)", self.position())
         self.at += 1
         if head.startswith("R^"):
-            n = small_integer(head[2:])
-            return Term("0" if n == 0 else "R" if n == 1 else f"R^{n}")
+            return flat(small_integer(head[2:]))
         if re.fullmatch(r"A\d", head) and self.accept(","):
             return self.numbered(head)
         if head.startswith("P{"):

@@ -32,6 +32,7 @@ from liehom.exact.catalog.algebras import (
     algebra_of,
     in_blocks,
     irrational_spiral,
+    is_family,
     is_linear,
     linear_matrices,
     scalar_parameters,
@@ -548,7 +549,7 @@ def _quotient(tree: Quotient) -> Pair | None:
     if not is_linear(top):
         return None
     matrices = linear_matrices(top)
-    algebra = linear_lie_algebra(matrices, str(top))
+    algebra = algebra_of(top) if isinstance(top, Term) and is_family(top) else linear_lie_algebra(matrices, str(top))
     rows = _rows(top, bottom, matrices)
     if rows is not None:
         return _spanned(algebra, rows, tree)  # no check: the stabilizer of something, see `preserving`

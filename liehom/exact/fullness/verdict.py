@@ -22,7 +22,10 @@ from liehom.exact.scalars.field import Field, Scalar
 
 # The relative invariant of the pair gives the components of codimension 1 of the set where (6.3) fails. Every proper
 # invariant subspace of g/h is in the cone, and in a maximal one. Forms and dominant elements that decide fullness give
-# further parts. The report says for which kinds of subsets it is complete, and which kinds were not searched.
+# further parts. The report says for which kinds of subsets it is complete, and which kinds were not searched. The cone
+# of a full pair is 0 in g/h, that is h.
+
+ALL = "all subsets (the pair is full)"
 
 
 @final
@@ -53,6 +56,8 @@ class FailureReport(Displayed):
     def __str__(self) -> str:
         if self.generic.holds is False:
             return "the range condition (6.3) holds for no psi"
+        if ALL in self.searched:
+            return "the range condition (6.3) holds for every psi" + (" outside h; it fails on h" if self.parts else "")
         if self.generic.holds is None:
             head = "it is not decided whether the range condition (6.3) holds for generic psi"
         else:
@@ -67,7 +72,7 @@ class FailureReport(Displayed):
 
 
 def failure_report(pair: Pair, certificate: Certificate | None = None) -> FailureReport:
-    """Failure report of an exact pair that is not full; `NotFull.where_it_fails` calls it.
+    """Failure report of an exact pair, made for pairs that are not full; `NotFull.where_it_fails` calls it.
 
     Parameters
     ----------
@@ -96,8 +101,8 @@ def failure_report(pair: Pair, certificate: Certificate | None = None) -> Failur
     further = [space for space in spaces if space.field != pair.field]  # h preserves them by construction
     text = "an invariant subspace of dimension {0.dimension} of g/h over {0.field.name}"
     parts += [FailureSet("subspace", text.format(space), space.basis) for space in further]
-    if any(part.kind == "hypersurface" for part in parts):
-        # the hypersurface contains the null cones
+    if any(part.covers for part in parts):
+        # the zeros of the relative invariant contain the null cones
         parts = [part for part in parts if part.kind != "null cone"]
     return FailureReport(generic, tuple(parts), *_claims(pair, generic, maximal))
 
@@ -197,6 +202,19 @@ class Full(Displayed):
     def verify(self) -> bool:
         """True if the independent checker verifies the certificate; otherwise raises `CertificateError`."""
         return _verified(self.pair, self.certificate, self.full)
+
+    def where_it_fails(self) -> FailureReport:
+        """Failure report: (6.3) holds for every psi outside h, and fails on h if h is not g.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> print(lh.decide_fullness(lh.pair("so(4)/so(3)")).where_it_fails())
+        the range condition (6.3) holds for every psi outside h; it fails on h
+        """
+        zero = self.pair.field.zeros(0, self.pair.dimension)
+        parts = (FailureSet("subspace", "h", zero, covers=True),) if self.pair.dimension else ()
+        return FailureReport(range_condition(self.pair), parts, (ALL,))
 
     def to_json(self) -> dict[str, Any]:
         """Verdict as a JSON object: `full`, `proved`, `reason`, the evidence and the certificate."""

@@ -44,8 +44,9 @@ class RelativeInvariant:
     Notes
     -----
     The range condition fails where f vanishes. The other points where it fails have codimension at least 2 (over the
-    complex numbers too). f is the radical of the greatest common divisor of the minors. For a full pair f may be a
-    definite form, whose only real zero is 0.
+    complex numbers too). f is the radical of the greatest common divisor of the minors. Its complex zeros are a
+    hypersurface. Its real zeros have codimension 1 if and only if f changes sign. For a full pair f may be a definite
+    form, whose only real zero is 0.
 
     Examples
     --------
@@ -59,7 +60,7 @@ class RelativeInvariant:
 
     @property
     def degree(self) -> int:
-        """Degree of f, an int; 0 if all failures have codimension at least 2."""
+        """Degree of f, an int; 0 if all failures, also over the complex numbers, have codimension at least 2."""
         return sum(int(p.total_degree()) for p in self.factors)
 
     def __call__(self, psi: VectorLike) -> Scalar:
@@ -78,7 +79,9 @@ class RelativeInvariant:
 
 
 def relative_invariant(pair: Pair, max_dimension: int = MAX_DIMENSION) -> RelativeInvariant | None:
-    """The reduced equation of the hypersurface where the range condition fails; None if it holds nowhere, or d = 0.
+    """The relative invariant f of a pair; None if the range condition holds nowhere, or d = 0.
+
+    The range condition fails where f = 0, and elsewhere in codimension 2 or more.
 
     Parameters
     ----------
@@ -123,8 +126,8 @@ def require_rational(pair: Pair) -> None:
         raise FieldError(f"relative invariants are computed over QQ only, not over {pair.field.name}")
 
 
-# Let f be the reduced equation of the hypersurface where the range condition fails, and y a point at which it holds, so
-# f(y) != 0 and f(x + t y) has the degree of f in t.  Its roots are among the t at which [h, psi] + R psi has a rank
+# Let f be the relative invariant, and y a point at which the range condition holds, so f(y) != 0 and f(x + t y) has
+# the degree of f in t.  Its roots are among the t at which [h, psi] + R psi has a rank
 # less than d at psi = x + t y.  If the rank is d - 1 there, the complex orbit of psi is open in a component of f = 0.
 # All of the component near psi is this orbit, which is smooth, and f has a simple zero.  If moreover y is not tangent
 # to the orbit, t is a simple root of f(x + t y).  If this is so at all t found, the degree of f is their number.  See
@@ -144,8 +147,8 @@ def invariant_degree(pair: Pair) -> int | None:
     Raises
     ------
     UndecidedError
-        If it is not decided whether the range condition holds, or if g/h has dimension above 8 and the hypersurface has
-        a component without an open orbit.
+        If it is not decided whether the range condition holds, or if g/h has dimension above 8 and f = 0 has a complex
+        component without an open orbit.
 
     Examples
     --------
@@ -194,12 +197,13 @@ class FailureSet:
 
     Attributes
     ----------
-    kind : {'hypersurface', 'null cone', 'subspace', 'eigenspace'}
+    kind : {'hypersurface', 'zeros', 'null cone', 'subspace', 'eigenspace'}
+        The zeros of the relative invariant f are a 'hypersurface' if f is shown to change sign, otherwise 'zeros'.
     description : str
-        The set as a noun phrase, in the coordinates x of ``pair.coordinates``.
+        The set as a noun phrase, in the coordinates x of ``pair.coordinates``, with the codimension of 'zeros'.
     data : RelativeInvariant, Matrix or array
-        For a hypersurface f, for a null cone the matrix P of the form, otherwise rows of coordinates x that span the
-        subspace (floats for 'eigenspace').
+        For a hypersurface or zeros f, for a null cone the matrix P of the form, otherwise rows of coordinates x that
+        span the subspace (floats for 'eigenspace').
     covers : bool
         Whether Z without this set has codimension at least 2: all components of codimension 1 are in it.
     """
@@ -257,7 +261,7 @@ def failure_cone(
     invariant = relative_invariant(pair) if has_hypersurfaces_computed(pair) else None
     sets = [_null_cone(pair, form) for form in forms]
     if invariant is not None and invariant.degree:
-        sets.insert(0, FailureSet("hypersurface", f"the zeros of {invariant}", invariant, covers=True))
+        sets.insert(0, _zeros(invariant))
     sets += [_subspace(pair, rows) for rows in subspaces]
     if certificate is not None and certificate.kind in ("dominance", "commutant"):
         sets += _eigenspace(pair, certificate)
@@ -267,6 +271,37 @@ def failure_cone(
 def has_hypersurfaces_computed(pair: Pair) -> bool:
     """Whether `failure_cone` lists all components of codimension 1, if the condition holds for some psi."""
     return 0 < pair.dimension <= MAX_DIMENSION and pair.field == QQ
+
+
+# A product of distinct irreducible polynomials over QQ has no multiple factor over the reals. Its real zeros have
+# codimension 1 if and only if it changes sign: a set of codimension 2 does not separate the two signs, and near a point
+# of a part of codimension 1 that no other factor meets, a factor without multiplicity has a regular zero.
+
+SIGNS = 200  # random points at which a form of even degree is evaluated
+
+
+def _zeros(f: RelativeInvariant) -> FailureSet:
+    """The real zeros of f, with what is shown of their codimension."""
+    quadratic = [_form(p, f.pair.dimension) if p.total_degree() == 2 else None for p in f.factors]
+    if any(map(_changes_sign, f.factors, quadratic)):
+        return FailureSet("hypersurface", f"the zeros of {f}", f, covers=True)
+    ranks = [form.rank() for form in quadratic if form is not None]  # semidefinite forms vanish on their kernels
+    if len(ranks) == len(f.factors):
+        codimension = f"of codimension {min(ranks)}"
+    elif _is_complex(f.pair):
+        codimension = "of codimension at least 2"
+    else:
+        codimension = "of a codimension that is not decided"
+    return FailureSet("zeros", f"the real zeros of {f}, {codimension}", f, covers=True)
+
+
+def _changes_sign(p: Any, form: ExactMatrix | None) -> bool:
+    """Whether a homogeneous polynomial, `form` its matrix if it is quadratic, is shown to have both signs."""
+    if form is not None or p.total_degree() % 2:
+        return form is None or min(form.signature()[:2]) > 0
+    d, rng = len(p.degrees()), random.Random(0)
+    values = (p(*(rng.randint(-9, 9) for _ in range(d))) for _ in range(SIGNS))
+    return len({v > 0 for v in values if v != 0}) == 2
 
 
 def _matrix(pair: Pair, rows: MatrixLike) -> Matrix:
@@ -370,22 +405,22 @@ def open_orbit_count(pair: Pair) -> int:
         return 1
     if not range_condition(pair):
         return 0
-    matrices = cast(list[ExactMatrix], pair.isotropy_matrices())
-    reduced = traceless(matrices, d, QQ)
-    if _is_complex(matrices, reduced, d):
+    if _is_complex(pair):
         return 1
     degree = invariant_degree(pair) or 0
     if degree < 2:
         return 1 + degree
+    reduced = traceless(cast(list[ExactMatrix], pair.isotropy_matrices()), d, QQ)
     for form in invariant_forms(reduced, d, QQ).symmetric if degree == 2 else ():
         if form.rank() > 1:  # it divides the relative invariant, and has its degree
             return _components(form)
     return _of_factors(pair, degree)
 
 
-def _is_complex(matrices: Sequence[ExactMatrix], reduced: Sequence[ExactMatrix], d: int) -> bool:
+def _is_complex(pair: Pair) -> bool:
     """Whether rho(h) + R, or rho(h) if its generic rank is d, is closed under the multiplication by a J as above."""
-    rng = random.Random(d)
+    matrices, d = cast(list[ExactMatrix], pair.isotropy_matrices()), pair.dimension
+    reduced, rng = traceless(matrices, d, QQ), random.Random(d)
     point = QQ.matrix([[rng.randint(-9, 9) for _ in range(d)]]).T
     spans = [span for span in ([QQ.identity(d), *reduced], matrices) if _rank([m @ point for m in span]) == d]
     return any(

@@ -20,7 +20,6 @@ from liehom.base.errors import (
     displayed,
 )
 from liehom.base.typing import IntegerArray, VectorLike
-from liehom.exact.algebra import linear as families
 from liehom.exact.algebra.constructions.classical import simple
 from liehom.exact.algebra.core.lie_algebra import LieAlgebra
 from liehom.exact.algebra.linear.closure import lie_closure, square_matrices
@@ -30,7 +29,13 @@ from liehom.exact.algebra.linear.complex_matrices import (
     list_of_matrices,
     real_matrices,
 )
-from liehom.exact.algebra.linear.named_matrices import classical_matrices, exceptional_matrices, linear_lie_algebra
+from liehom.exact.algebra.linear.named_matrices import (
+    FAMILY_MATRICES,
+    classical_matrices,
+    exceptional_matrices,
+    linear_lie_algebra,
+    spelled,
+)
 from liehom.exact.representations.core.coordinates import Coordinates
 from liehom.exact.representations.core.elements import rows_of_matrices
 from liehom.exact.representations.core.pair import Pair
@@ -44,11 +49,11 @@ from liehom.exact.scalars.rational import QQ
 
 _CLASSICAL = re.compile(r"(gl|sl|so|su|u|sp|spin)\(([0-9]+)(?:,([0-9]+|[RCH]))?\)")
 _COMPLEX = re.compile(r"s?u\([0-9]+(,[0-9]+)?\)|(gl|sl|so|sp)\([0-9]+,C\)")
-_SO_STAR = re.compile(r"so\*\(([0-9]*[02468])\)")
+_FAMILY = re.compile(r"(e|aff|galilei|so\*|upper|strict)\(([0-9]+)\)|(iso)\(([0-9]+),([0-9]+)\)")
 
 
 def defining(algebra: LieAlgebra | str) -> Representation:
-    """The defining representation of a classical or exceptional algebra by its standard matrices.
+    """The defining representation of an algebra with a name by its standard matrices.
 
     C^n is R^(2n) and H^n is R^(4n).
 
@@ -57,7 +62,9 @@ def defining(algebra: LieAlgebra | str) -> Representation:
     algebra : LieAlgebra or str
         An algebra whose name is one of 'gl(n)', 'sl(n)' (also 'sl(n,C)', 'sl(n,H)'), 'so(p,q)', 'so(n,C)', 'so*(2n)',
         'su(p,q)', 'u(p,q)', 'sp(p,q)' (quaternionic), 'sp(2n,R)', 'sp(2n,C)', 'spin(p,q)', or an exceptional one such
-        as 'g2(2)', 'f4', 'e6(-26)', in the basis of its standard matrices; or such a name.
+        as 'g2(2)', 'f4', 'e6(-26)', in the basis of its standard matrices; or 'e(n)', 'iso(p,q)', 'aff(n)',
+        'galilei(n)', 'upper(n)', 'strict(n)', in the basis of its constructor, such as `liehom.euclidean`; or such a
+        name.
 
     Raises
     ------
@@ -66,6 +73,8 @@ def defining(algebra: LieAlgebra | str) -> Representation:
 
     Notes
     -----
+    e(n), iso(p,q) and aff(n) act on the vectors (x, 1) of size n + 1 or p + q + 1, galilei(n) on the vectors (x, t, 1).
+
     The forms of f4 and e6 act on the Albert algebra of dimension 27; spin(p, q) acts on a real spin representation.
     The exceptional algebras that `liehom.simple` constructs without matrices have modules of smallest dimension: e6(2),
     e6(-14) and e6 on R^54, e7(7) and e7(-25) on R^56, e7(-5) and e7 on R^112, and the forms of e8 on themselves.
@@ -77,11 +86,15 @@ def defining(algebra: LieAlgebra | str) -> Representation:
     >>> rho = lh.defining(g)
     >>> rho.size, rho.algebra is g, lh.defining("su(2)").size
     (4, True, 4)
+    >>> print(lh.defining(lh.euclidean(2)).matrices[1])  # the translation along the first axis
+    [0, 0, 1]
+    [0, 0, 0]
+    [0, 0, 0]
     """
     if not isinstance(algebra, str):
         _require_algebra(algebra)
-    name = algebra if isinstance(algebra, str) else algebra.name
-    text = (name or "").replace(" ", "")
+    name = spelled(algebra) if isinstance(algebra, str) else algebra.name
+    text = spelled(name or "")
     if least := _least_module(text):
         return _of_algebra(least, algebra)
     matrices = standard_matrices(name)
@@ -129,16 +142,17 @@ def _least_module(name: str) -> Representation | None:
 
 def standard_matrices(name: str | None) -> IntegerArray:
     """The standard basis of a named matrix algebra, integer matrices of shape (dim, N, N)."""
-    text = (name or "").replace(" ", "")
+    text = spelled(name or "")
     if match := _CLASSICAL.fullmatch(text):
         kind, first, second = match.groups()
         parameter = 0 if second is None else int(second) if second.isdigit() else second
         return classical_matrices(kind, int(first), parameter)
-    if match := _SO_STAR.fullmatch(text):
-        return families.so_star(int(match[1]) // 2)
+    if match := _FAMILY.fullmatch(text):
+        kind, *numbers = filter(None, match.groups())
+        return FAMILY_MATRICES[kind](*map(int, numbers))
     if text[:2] in ("g2", "f4", "e6"):
         return exceptional_matrices(text)
-    known = "so(4), so(3,1), su(2), sl(3), sl(2,C), gl(2), sp(2), sp(4,R), so*(6), spin(7), g2, f4, e6(-26)"
+    known = "so(4), so(3,1), su(2), sl(3), sl(2,C), gl(2), sp(2), sp(4,R), so*(6), spin(7), g2, f4, e6(-26), e(3)"
     raise InputError(f"no defining representation is known for {displayed(name)}; names are such as {known}")
 
 

@@ -42,7 +42,7 @@ class JaxKernel:
         try:
             import jax
         except ImportError:
-            raise TraceError('engine="jax" needs the extra: pip install "liehom[jax]"') from None
+            raise TraceError('engine="jax" needs JAX: pip install jax') from None
         self.graph = graph
         self.cost = CPU_OPERATION_COST if jax.default_backend() == "cpu" else 1
         key = _fingerprint(graph)

@@ -51,7 +51,7 @@ def _host() -> tuple[ModuleType, str, dict[str, bool]]:
     try:
         import llvmlite.binding as llvm
     except ImportError:
-        raise TraceError('engine="llvm" needs the extra: pip install "liehom[llvm]"') from None
+        raise TraceError('engine="llvm" needs llvmlite: pip install llvmlite') from None
     llvm.initialize_native_target()
     llvm.initialize_native_asmprinter()
     _add_symbols(llvm)

@@ -306,7 +306,7 @@ def evaluate_with_jax(
     try:
         import jax.numpy as jnp
     except ImportError:
-        raise TraceError('engine="jax" needs the extra: pip install "liehom[jax]"') from None
+        raise TraceError('engine="jax" needs JAX: pip install jax') from None
     values: dict[int, Any] = {}
     for x in needed(outputs):
         values[x.index] = _value(jnp, x, values, inputs, differentiable)

@@ -1,12 +1,15 @@
 """Names as mathematicians and physicists write them: each constructs, prints in one form, and round-trips."""
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 
 import liehom as lh
 from liehom.base.errors import CatalogError
-from liehom.exact.catalog.algebras import linear_matrices
+from liehom.exact.catalog.algebras import EXAMPLES, linear_matrices
 from liehom.exact.catalog.names import parse
+from liehom.exact.fullness.classification_rows import rows
 
 PAIRS = {
     "su(4)/sp(2)": (15, 10, "so(5)"), "su(6)/sp(3)": (35, 21, "sp(3)"), "su(2,2)/sp(1,1)": (15, 10, "so(4,1)"),
@@ -32,12 +35,62 @@ def test_pairs(name: str) -> None:
 @pytest.mark.parametrize(("written", "printed"), [
     ("schrodinger(3)", "schroedinger(3)"), ("poincare(3)", "iso(3,1)"), ("poincare(2,2)", "iso(2,2)"),
     ("euclidean(3)", "e(3)"), ("A4,2( 2/4 )", "A4,2(1/2)"), ("A4 , 1", "A4,1"), ("A4,5(-1, 4/4)+R", "A4,5(-1,1)+R"),
-    ("bianchi(VII; 3/6)", "bianchi(VII;1/2)"),
+    ("bianchi(VII; 3/6)", "bianchi(VII;1/2)"), ("SE(3)", "e(3)"), ("iso(3)", "e(3)"), ("O(3,1)", "so(3,1)"),
+    ("affine(2)", "aff(2)"), ("abelian(3)", "R^3"), ("Galilean(2)", "galilei(2)"), ("SU(2) x SU(2)", "su(2)+su(2)"),
+    ("SU(2)×SU(2)", "su(2)+su(2)"), ("su(2)xsu(2)", "su(2)+su(2)"), ("SU(2)SU(2)", "su(2)+su(2)"), ("r^2", "R^2"),
+    ("sl(2,c)", "sl(2,C)"), ("Bianchi(vi;2)", "bianchi(VI;2)"), ("a4,1", "A4,1"),
 ])  # fmt: skip
 def test_other_spellings_print_in_one_form(written: str, printed: str) -> None:
     assert str(parse(written)) == printed == str(parse(printed))
     algebra = lh.catalog.algebra(written)
     assert algebra.name == printed and lh.catalog.algebra(printed) == algebra
+
+
+@pytest.mark.parametrize("change", [str.upper, str.lower])
+def test_capitals_are_not_distinguished(change: Callable[[str], str]) -> None:
+    assert [name for name in lh.catalog.pair_names() if parse(change(name)) != parse(name)] == []
+    assert [name for name in EXAMPLES if parse(change(name)) != parse(name)] == []
+
+
+SPACES = [row.space.partition(" = ")[2] for d in range(1, 9) for row in rows(d) if " = " in row.space]
+
+
+@pytest.mark.parametrize("name", SPACES)
+def test_a_space_is_read_as_a_verdict_prints_it(name: str) -> None:
+    assert lh.classify(lh.pair(name)).space.endswith(f" = {name}")
+
+
+def test_the_verdicts_print_spaces() -> None:
+    assert {"SO(3)/SO(2)", "SL(3,C)/P1", "Sp(3)/Sp(2)Sp(1)", "G2/SU(3)", "Spin(7)/G2"} <= set(SPACES)
+
+
+def test_real_forms_without_matrices_are_algebras_of_the_catalogue() -> None:
+    algebra = lh.catalog.algebra("E6(-14)")
+    assert algebra.name == "e6(-14)" and algebra.killing_signature() == (32, 46, 0)
+    with pytest.raises(CatalogError, match="'G2' is read as a type"):
+        lh.catalog.algebra("G2")
+
+
+@pytest.mark.parametrize("name", ["bargmann(3)", "schroedinger(3)", "filiform(5)", "bianchi(VII)", "A4,1", "R^2"])
+@pytest.mark.parametrize("read", [lh.catalog.representation, lh.pair])
+def test_a_refused_name_is_not_its_own_hint(read: Callable[[str], object], name: str) -> None:
+    assert name in EXAMPLES
+    with pytest.raises(CatalogError) as caught:
+        read(name)
+    assert name not in str(caught.value).partition("; the nearest are ")[2].split(", ")
+
+
+def test_hints_for_representations_are_names_of_representations() -> None:
+    with pytest.raises(CatalogError, match="nearest are") as caught:
+        lh.catalog.representation("bargman(3)")
+    for name in str(caught.value).partition("; the nearest are ")[2].split(", "):
+        lh.catalog.representation(name)
+
+
+def test_groups_of_motions_contain_smaller_ones() -> None:
+    pair = lh.pair("SE(3)/SE(2)")
+    assert pair.name == "e(3)/e(2)" and pair.algebra == lh.euclidean(3)
+    assert pair.subalgebra.as_algebra().dimension == 3 and not pair.subalgebra.as_algebra().is_nilpotent()
 
 
 def test_spellings_work_in_pairs() -> None:
@@ -63,7 +116,7 @@ def test_full_with_a_spiral() -> None:
 
 
 @pytest.mark.parametrize(("name", "match"), [
-    ("shroedinger(3)", r"nearest are schroedinger\(3\)"), ("A4", "nearest are A4,1"), ("A4,13", "A4,1 to A4,12"),
+    ("shroedinger(3)", r"nearest are schroedinger\(3\)"), ("A4", r"such as .*A4,1"), ("A4,13", "A4,1 to A4,12"),
     ("A4,2", "1 parameter"), ("A4,2(1/0)", "positive denominator at position 7"),
     ("so(1/2)", r"expected '\)' at position 4"), ("diag(1/2,1)", "expected"), ("A4,2(so(3))", "expected an integer"),
     ("galelei(3)", "galilei"),

@@ -61,6 +61,34 @@ def test_the_report_denies_nothing_that_it_has_not_searched() -> None:
     )
 
 
+def test_zeros_of_codimension_2_are_reported_as_such() -> None:
+    report = lh.decide_fullness(lh.pair("sl(3,C)/P{1,2}")).where_it_fails()
+    assert [part.kind for part in report.parts] == ["zeros", "subspace"]
+    assert "the real zeros of x2^2 + x3^2, of codimension 2, and an invariant subspace" in str(report)
+
+
+@pytest.mark.parametrize("name", ["so(4)/so(3)", "aff(1)/R", "sl(3,C)/P1", "affine(spiral(sqrt(2),1))"])
+def test_a_full_pair_fails_on_h_only(name: str) -> None:
+    pair = lh.pair(name)
+    report = lh.decide_fullness(pair).where_it_fails()
+    assert str(report) == "the range condition (6.3) holds for every psi outside h; it fails on h"
+    assert report.not_searched == () and [(part.kind, part.data.nrows) for part in report.parts] == [("subspace", 0)]
+    rng = random.Random(0)
+    for _ in range(5):
+        inside = (
+            pair.field.matrix([[rng.randint(-5, 5) for _ in range(pair.subalgebra.dimension)]]) @ pair.subalgebra.basis
+        )
+        step = pair.subalgebra.quotient().lift.select(rows=[0]).scale(rng.randint(1, 5))
+        outside = (inside + step).row(0)
+        assert not lh.range_condition(pair, inside.row(0)) and lh.range_condition(pair, outside)
+
+
+def test_the_range_condition_of_g_over_itself_fails_nowhere() -> None:
+    report = lh.decide_fullness(lh.pair("so(3)/so(3)")).where_it_fails()
+    assert str(report) == "the range condition (6.3) holds for every psi" and report.parts == ()
+    assert lh.range_condition(lh.pair("so(3)/so(3)"), [0] * 3)
+
+
 def test_hypersurfaces_of_large_pairs_are_not_searched() -> None:
     report = lh.decide_fullness(lh.pair("so(9,1)/so(8,1)")).where_it_fails()
     assert report.searched == (NONE,)

@@ -244,6 +244,38 @@ def test_the_cone_by_an_invariant_form() -> None:
         assert not lh.range_condition(pair, on_v(pair, x)).holds and hypersurface.data(on_v(pair, x)) == 0
 
 
+@pytest.mark.parametrize(("name", "codimension"), [
+    ("sl(3,C)/P{1,2}", "2"), ("so(4)/so(3)", "3"), ("affine(form(1,2,5))", "3"),
+    ("affine(blocks(gl(1,C),so(3)+R))", "2"), ("affine(so(3,C)+u(1)+R)", "at least 2"),
+    ("affine(field(1,1,1,1))", None),
+])  # fmt: skip
+@pytest.mark.parametrize("seed", [None, 5])
+def test_zeros_without_a_change_of_sign_are_not_called_a_hypersurface(
+    name: str, codimension: str | None, seed: int | None
+) -> None:
+    """The zeros of the last two have codimension 2, too: z^2 = 0 in C^3, and two factors over QQ(sqrt(5))."""
+    pair = lh.pair(name) if seed is None else scrambled(lh.pair(name), seed)
+    (zeros,) = lh.orbits.failure_cone(pair)
+    end = f", of codimension {codimension}" if codimension else ", of a codimension that is not decided"
+    assert zeros.kind == "zeros" and zeros.description == f"the real zeros of {zeros.data}{end}" and zeros.covers
+    rng = random.Random(2)
+    values = [zeros.data([rng.randint(-9, 9) for _ in range(pair.algebra.dimension)]) for _ in range(50)]
+    assert min(values) >= 0 or max(values) <= 0
+
+
+@pytest.mark.parametrize("name", [
+    "so(3,1)/so(2,1)", "affine(S3(gl(2)))", "affine(upper(3))", "affine(field(-2,0,0))", "affine(field(-2,0,0,0))",
+    "R/0", "affine(blocks(gl(1),gl(1,C)))",
+])  # fmt: skip
+def test_a_hypersurface_has_points_of_both_signs(name: str) -> None:
+    pair = lh.pair(name)
+    (zeros,) = lh.orbits.failure_cone(pair)
+    rng = random.Random(1)
+    values = [zeros.data([rng.randint(-9, 9) for _ in range(pair.algebra.dimension)]) for _ in range(400)]
+    assert zeros.kind == "hypersurface" and min(values) < 0 < max(values)
+    assert zeros.description == f"the zeros of {zeros.data}"
+
+
 def test_forms_and_subspaces_are_checked() -> None:
     pair = affine(UPPER)
     assert lh.orbits.failure_cone(pair, subspaces=[[[1, 0, 0], [0, 1, 0]]])[-1].kind == "subspace"

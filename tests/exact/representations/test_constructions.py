@@ -149,6 +149,40 @@ def test_defining_of_the_constructors() -> None:
         assert lh.defining(g).algebra is g
 
 
+@pytest.mark.parametrize(("algebra", "linear", "size"), [
+    (lh.euclidean(3), "so(3)", 4), (lh.euclidean(1), "so(1)", 2), (lh.poincare(3), "so(3,1)", 5),
+    (lh.poincare(0, 2), "so(0,2)", 3), (lh.algebra.affine(2), "gl(2)", 3),
+])  # fmt: skip
+def test_defining_of_affine_maps(algebra: lh.LieAlgebra, linear: str, size: int) -> None:
+    """Each constructor has its matrices (A, v), first those of the linear algebra, then the translations."""
+    rho = lh.defining(algebra)
+    assert rho.algebra is algebra and rho.size == size
+    matrices = [a.to_rows() for a in rho.matrices]
+    parts = [a.to_rows() for a in lh.defining(linear).matrices]
+    assert [[row[:-1] for row in a[:-1]] for a in matrices[: len(parts)]] == parts
+    assert all(not any(row[-1] for row in a) and not any(a[-1]) for a in matrices[: len(parts)])
+    for i, a in enumerate(matrices[len(parts) :]):
+        assert a == [[int((j, k) == (i, size - 1)) for k in range(size)] for j in range(size)]
+
+
+def test_defining_of_other_families() -> None:
+    for algebra, size in ((lh.galilei(3), 5), (lh.galilei(1), 3), (lh.algebra.upper_triangular(3), 3)):
+        rho = lh.defining(algebra)
+        assert rho.algebra is algebra and rho.size == size
+        lh.Representation(algebra, rho.matrices)  # [rho x, rho y] = rho [x, y] is proved again
+    assert lh.defining(lh.galilei(2)).matrices[-1].to_rows()[2] == [0, 0, 0, 1]
+
+
+@pytest.mark.parametrize(("written", "plain"), [
+    ("SO(3,1)", "so(3,1)"), ("SE(3)", "e(3)"), ("SL(2,c)", "sl(2,C)"), ("SO*(6)", "so*(6)"), ("E6(-26)", "e6(-26)"),
+    ("Spin(7)", "spin(7)"), ("AFF(2)", "aff(2)"),
+])  # fmt: skip
+def test_capitals_are_read(written: str, plain: str) -> None:
+    rho = lh.defining(written)
+    assert rho.algebra.name == plain and rho == lh.defining(plain)
+    assert lh.catalog.representation(written).matrices == rho.matrices
+
+
 def test_defining_over_another_field() -> None:
     g = lh.so(3).over(SQRT2)
     assert lh.defining(g).field == SQRT2 and lh.defining(lh.so(3).over(RR)).field == RR
@@ -165,6 +199,13 @@ def test_unknown_names_are_refused(name: str) -> None:
 def test_unknown_exceptional_names_are_refused() -> None:
     with pytest.raises(CatalogError, match="g2"):
         lh.defining("g2(3)")
+
+
+def test_motions_in_another_basis_are_refused() -> None:
+    rows = [[int(i == j or (i, j) == (0, 3)) for j in range(6)] for i in range(6)]
+    moved = lh.LieAlgebra(lh.euclidean(3).change_of_basis(rows).table, name="e(3)")
+    with pytest.raises(lh.errors.RepresentationError):
+        lh.defining(moved)
 
 
 def test_defining_refuses_another_basis() -> None:

@@ -951,14 +951,14 @@ class LieAlgebra(Displayed, Immutable):
         return is_isomorphic(self, other)
 
     # -- Cartan decomposition ----------------------------------------------------------------------------
-    def cartan_decomposition(self, *, extend: bool = False) -> CartanDecomposition:
+    def cartan_decomposition(self, *, extend: bool = True) -> CartanDecomposition:
         """The decomposition g = k + p of a semisimple algebra for a Cartan involution; unpacks as ``k, p``.
 
         Parameters
         ----------
         extend : bool, optional
-            If no involution over the field of the algebra was found, return one over a larger real number field. The
-            field is ``.field`` of the result, and k and p are those of the algebra over that field.
+            If no involution over the field of the algebra was found, return one over a larger real number field, the
+            default. The field is ``.field`` of the result, and k and p are those of the algebra over that field.
 
         Returns
         -------
@@ -968,8 +968,9 @@ class LieAlgebra(Displayed, Immutable):
         Raises
         ------
         NoRationalInvolutionError
-            If it is proved that no Cartan involution has entries in the field: for example, of two ideals over the
-            reals that are conjugate over the field one is compact and the other is not.
+            If it is proved that no Cartan involution has entries in the field, and none was looked for or found over a
+            larger field. For example, of two ideals over the reals that are conjugate over the field one is compact
+            and the other is not; or the algebra consists of the elements of trace 0 of a division algebra of degree 3.
         UndecidedError
             If no Cartan involution with small rational entries was found, nor over a larger field if `extend` is
             True. In both cases ``g.over(lh.RR).cartan_decomposition()`` finds one numerically.
@@ -992,7 +993,7 @@ class LieAlgebra(Displayed, Immutable):
 
         >>> table = {(0, 2): {4: 1}, (2, 4): {1: 1}, (0, 4): {2: -1}, (0, 3): {5: 1}, (1, 2): {5: 1}, (1, 3): {4: 2}}
         >>> table |= {(2, 5): {0: 2}, (3, 4): {0: 2}, (3, 5): {1: 2}, (0, 5): {3: -1}, (1, 4): {3: -1}, (1, 5): {2: -2}}
-        >>> cartan = lh.LieAlgebra(table).cartan_decomposition(extend=True)
+        >>> cartan = lh.LieAlgebra(table).cartan_decomposition()
         >>> cartan.field, cartan.k.dimension
         (QQ(sqrt(2)), 4)
         """
@@ -1001,7 +1002,7 @@ class LieAlgebra(Displayed, Immutable):
         return cartan_decomposition(self, extend=extend)
 
     def cartan_involution(self) -> Matrix:
-        """The matrix (n, n), on columns, of the Cartan involution of `cartan_decomposition`.
+        """The matrix (n, n), on columns, of the Cartan involution of `cartan_decomposition`, with entries in its field.
 
         Examples
         --------
@@ -1011,14 +1012,14 @@ class LieAlgebra(Displayed, Immutable):
         """
         return self.cartan_decomposition().theta
 
-    def maximal_compact_subalgebra(self, *, extend: bool = False) -> Subalgebra:
+    def maximal_compact_subalgebra(self, *, extend: bool = True) -> Subalgebra:
         """The fixed points of a Cartan involution (`cartan_decomposition`).
 
         Parameters
         ----------
         extend : bool, optional
-            If no involution over the field of the algebra was found, use one over a larger real number field: the
-            result is then a subalgebra of the algebra over that field.
+            If no involution over the field of the algebra was found, use one over a larger real number field, the
+            default. The result is then a subalgebra of the algebra over that field.
 
         Examples
         --------

@@ -9,10 +9,11 @@ exact checks.  Candidates come from these sources, in order of cost.
    centralizer (elliptic_involution), for each simple ideal in the basis of a large Lie order (lattice_order).
 4. Random inner automorphisms of the candidates of lattice reduction.
 
-If the centroid excludes a Cartan involution over the field, `NoRationalInvolutionError` is raised before any search
-(involution_obstruction).  If no candidate passes the checks, `UndecidedError` is raised, because there may be no Cartan
-involution over the field; the decomposition over float64 always exists.  With `extend` the sources 1 to 3 are followed
-by involutions over a larger real number field (extended_involution).
+If the centroid excludes a Cartan involution over the field, no source is tried (involution_obstruction). If a prime
+excludes one, the second order and source 4 are not tried (local_obstruction). With `extend`, the default,
+sources 1 to 3 are followed by involutions over a larger real number field (extended_involution). Otherwise
+`NoRationalInvolutionError` is raised after a proof. If no candidate passes the checks, `UndecidedError` is raised; the
+decomposition over float64 always exists.
 """
 
 from __future__ import annotations
@@ -39,6 +40,7 @@ from liehom.exact.algebra.involutions.field_involutions import (
     involution_about_axis,
     involution_about_axis_over_centroid,
     involution_obstruction,
+    local_obstruction,
 )
 from liehom.exact.algebra.involutions.rational_involution import (
     DENOMINATOR,
@@ -97,7 +99,7 @@ class CartanDecomposition:
         return iter((self.k, self.p))
 
 
-def cartan_decomposition(algebra: LieAlgebra, *, extend: bool = False) -> CartanDecomposition:
+def cartan_decomposition(algebra: LieAlgebra, *, extend: bool = True) -> CartanDecomposition:
     """Implements `LieAlgebra.cartan_decomposition`."""
     field, n = algebra.field, algebra.dimension
     killing = algebra.killing_form()
@@ -107,24 +109,23 @@ def cartan_decomposition(algebra: LieAlgebra, *, extend: bool = False) -> Cartan
         return _decomposed(algebra, field.from_entries(numerical_involution(algebra).T.ravel().tolist(), n, n))
     if killing.signature()[0] == 0:
         return _decomposed(algebra, field.identity(n))
-    try:
-        theta = _rational(algebra, long=not extend)
-    except NoRationalInvolutionError:
-        if not extend:
-            raise
-        theta = None
-    if theta is not None:
-        return _decomposed(algebra, theta)
-    if extend and isinstance(field, ExactField):
-        extended = extended_involution(algebra, is_cartan_involution)
-        if extended is not None:
-            return _decomposed(*extended)
-    raise UndecidedError(
+    failure = UndecidedError(
         f"no Cartan involution of {algebra!r} over {field.name} was found, and none was excluded: lattice "
         f"reduction met none of denominator at most {DENOMINATOR}, and nilpotent and elliptic elements gave none; "
-        + ("" if extend else "cartan_decomposition(extend=True) looks for one over a larger real number field, and ")
-        + "algebra.over(lh.RR).cartan_decomposition() finds one numerically"
+        f"cartan_decomposition(extend={not extend}) looks "
+        + ("longer for one over the same field" if extend else "for one over a larger real number field")
+        + ", and algebra.over(lh.RR).cartan_decomposition() finds one numerically"
     )
+    try:
+        theta = _rational(algebra, long=not extend)
+    except NoRationalInvolutionError as proof:
+        theta, failure = None, proof
+    if theta is not None:
+        return _decomposed(algebra, theta)
+    extended = extended_involution(algebra, is_cartan_involution) if extend and isinstance(field, ExactField) else None
+    if extended is None:
+        raise failure
+    return _decomposed(*extended)
 
 
 def is_cartan_involution(algebra: LieAlgebra, theta: MatrixLike) -> bool:
@@ -187,14 +188,17 @@ def _constructed(algebra: LieAlgebra, theta: Array) -> Matrix | None:
 def _not_excluded(algebra: LieAlgebra, centroids: list[CentroidField]) -> None:
     """Raise `NoRationalInvolutionError` if the centroid of a simple ideal excludes a Cartan involution."""
     for centroid in centroids:
-        reason = involution_obstruction(centroid)
-        if reason is not None:
-            raise NoRationalInvolutionError(
-                reason,
-                f"{algebra!r} has no Cartan involution with entries in {algebra.field.name}, by proof: for a simple "
-                f"ideal of dimension {centroid.algebra.dimension}, {reason}; over the reals there is one, and "
-                "algebra.over(lh.RR).cartan_decomposition() finds it numerically",
-            )
+        if (reason := involution_obstruction(centroid)) is not None:
+            raise _excluded(algebra, centroid.algebra, reason)
+
+
+def _excluded(algebra: LieAlgebra, ideal: LieAlgebra, reason: str) -> NoRationalInvolutionError:
+    return NoRationalInvolutionError(
+        reason,
+        f"{algebra!r} has no Cartan involution with entries in {algebra.field.name}, by proof: for a simple ideal of "
+        f"dimension {ideal.dimension}, {reason}; over the reals there is one: extend=True looks for it over fields of "
+        "small degree, and algebra.over(lh.RR).cartan_decomposition() finds it numerically",
+    )
 
 
 def _of_ideals(algebra: LieAlgebra, ideals: list[Subalgebra], long: bool) -> Matrix | None:
@@ -228,6 +232,8 @@ def _in_a_large_order(algebra: LieAlgebra, rank: int, theta: Array | None, long:
             exact = _constructed(current, theta) if exact is None else exact
             if exact is not None:
                 return basis.T @ exact @ basis.T.inverse()
+        if not thorough and (reason := local_obstruction(current)) is not None:
+            raise _excluded(algebra, algebra, reason)
     rounds = max(FEW_ROUNDS, ROUNDS * SMALL**2 // max(n, SMALL) ** 2) if orders else FEW_ROUNDS
     exact = _searched(current, theta, rounds) if long and theta is not None else None
     return None if exact is None else basis.T @ exact @ basis.T.inverse()

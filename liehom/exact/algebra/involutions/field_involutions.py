@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import reduce
-from itertools import islice
+from itertools import islice, product
+from math import isqrt
 from operator import mul
 from typing import TypeAlias, final
 
@@ -13,7 +14,7 @@ import numpy as np
 
 from liehom.base.budget import in_time
 from liehom.base.errors import InternalError, SingularError
-from liehom.base.typing import Array
+from liehom.base.typing import Array, IntegerArray
 from liehom.exact.algebra.core.lie_algebra import LieAlgebra
 from liehom.exact.algebra.involutions.cartan_involution import (
     approximate_involution,
@@ -30,12 +31,14 @@ from liehom.exact.algebra.involutions.rational_involution import (
 )
 from liehom.exact.algebra.structure.centroid import evaluate, exact_field
 from liehom.exact.algebra.structure.ideals import CentroidField, direct_sum_decomposition, field_places, over_extension
+from liehom.exact.algebra.structure.identification import real_form
 from liehom.exact.algebra.structure.root_spaces import cartan_subalgebra
 from liehom.exact.scalars.exact_field import ExactMatrix, as_exact
 from liehom.exact.scalars.extension import Extension, adjoin_root, real_roots, trivial_extension
 from liehom.exact.scalars.field import Matrix, Scalar
 from liehom.exact.scalars.joint_spectrum import complex_conjugation
-from liehom.exact.scalars.lattices import reduced_rows
+from liehom.exact.scalars.lattices import reduced_rows, smallest_prime
+from liehom.exact.scalars.modular import ModularSpan, left_kernel
 from liehom.exact.scalars.polynomial import Polynomial
 from liehom.exact.scalars.rational import QQ
 from liehom.exact.scalars.subspaces import integral_basis, orthogonal_basis
@@ -99,6 +102,76 @@ def involution_obstruction(centroid: CentroidField) -> str | None:
     if kinds == {"complex"} and f.degree > 2 and integral and complex_conjugation(f) is None:
         return "its centroid is totally complex without complex multiplication"
     return None
+
+
+# A proof at a prime p that a form of sl(m, R) or sl(m/2, H), m > 2, has no Cartan involution over QQ.
+# Let M_0 > M_1 > ... > M_r = p M_0 be lattices in g (x) QQ_p, M_(i+r) = p M_i, with [M_i, M_j] in M_(i+j). If x in M_i
+# is nilpotent, so is the map of ad x on the sum of the M_j / M_(j+1), j modulo r, which depends on x modulo M_(i+1)
+# only. If none of these finitely many maps is nilpotent, g is anisotropic at p. Then its automorphisms are inner, while
+# Cartan involutions of the two real forms are outer: docs/theory/structure.md.
+
+LARGEST = 100  # primes below this one are tried
+CLASSES = 10_000  # elements of M_i / M_(i+1) with one leading coefficient
+
+
+def local_obstruction(algebra: LieAlgebra) -> str | None:
+    """The reason why no Cartan involution is over QQ, from a small prime, or None; in the basis of an order."""
+    m, killing = isqrt(algebra.dimension + 1), as_exact(algebra.killing_form()).primitive()
+    if m < 3 or m**2 != algebra.dimension + 1 or algebra.table.den != 1:
+        return None
+    if real_form(algebra) not in (f"sl({m},R)", f"sl({m // 2},H)"):
+        return None
+    determinant = int(QQ.convert(killing.determinant()).p)
+    for p in range(2, LARGEST):
+        prime = determinant % p == 0 and smallest_prime(p) == p
+        if prime and _is_anisotropic(algebra, killing, p):
+            return f"over the {p}-adic numbers it is the part of trace 0 of a division algebra of degree {m}"
+    return None
+
+
+def _is_anisotropic(algebra: LieAlgebra, killing: ExactMatrix, p: int) -> bool:
+    """Whether M_1 = {x : K(x, M_0) = 0 mod p} and M_(i+1) = [M_1, M_i] + p M_0 show that g is anisotropic at p."""
+    n, form = algebra.dimension, np.array([int(x) % p for x in killing.parts[0].entries()])
+    constants = _residues(algebra, p)
+    spaces = [np.eye(n, dtype=np.int64), left_kernel(form.reshape(n, n), p)]
+    while len(spaces[-1]):
+        span = ModularSpan(p, n)
+        span.extend(np.einsum("ai,bj,ijk->abk", spaces[1], spaces[-1], constants, optimize=True).reshape(-1, n) % p)
+        if span.rank == len(spaces[-1]):
+            return False
+        spaces.append(span.echelon()[0])
+    # a basis of M_0 that contains bases of the M_i modulo p M_0
+    span, r = ModularSpan(p, n), len(spaces) - 1
+    parts = [space[span.extend(space)] for space in reversed(spaces[:r])]
+    level = np.repeat(range(r - 1, -1, -1), [len(part) for part in parts])
+    constants = _residues(algebra.change_of_basis(np.concatenate(parts).tolist()), p**2)
+    rise = level[:, None, None] + level[:, None] - level
+    if (constants % p ** np.clip(-(-rise // r), 0, 2)).any():
+        return False
+    graded = np.where(rise == 0, constants % p, np.where(rise == r, constants // p, 0))
+    return not any(_has_nilpotent(graded[level == i], p) for i in range(r))
+
+
+def _residues(algebra: LieAlgebra, modulus: int) -> IntegerArray:
+    """The structure constants (n, n, n) modulo a number that is coprime to their denominator."""
+    n, table = algebra.dimension, as_exact(algebra.table.dense())
+    inverse = pow(int(table.den), -1, modulus)
+    return np.array([int(x) * inverse % modulus for x in table.parts[0].entries()], dtype=np.int64).reshape(n, n, n)
+
+
+def _has_nilpotent(maps: IntegerArray, p: int) -> bool:
+    """Whether a combination modulo p, not all coefficients 0, is nilpotent, or there are too many combinations."""
+    d, n = maps.shape[:2]
+    for lead in range(d):
+        if p ** (d - 1 - lead) > CLASSES:
+            return True
+        tails = product(range(p), repeat=d - 1 - lead)
+        powers = np.tensordot(np.array([(1, *tail) for tail in tails]), maps[lead:], axes=1) % p
+        for _ in range(n.bit_length()):
+            powers = powers @ powers % p
+        if not powers.any(axis=(1, 2)).all():
+            return True
+    return False
 
 
 # Cartan involutions from elements with a compact centralizer, over the field of the algebra or a larger real one.

@@ -214,6 +214,20 @@ def triangular(n: int, above: int = 0) -> IntegerArray:
     return stack((unit(n, i, j) for i in range(n) for j in range(i + above, n)), n)
 
 
+def motions(linear: IntegerArray) -> IntegerArray:
+    """Basis of h + R^N in gl(N + 1) for a basis of h in gl(N), then the translations: (A, v) is [[A, v], [0, 0]]."""
+    size = linear.shape[1]
+    require_basis(len(linear) + size, size + 1)
+    return np.concatenate([np.pad(linear, ((0, 0), (0, 1), (0, 1))), [unit(size + 1, i, size) for i in range(size)]])
+
+
+def galilei(n: int) -> IntegerArray:
+    """Basis of the Galilei algebra on the vectors (x, t, 1): rotations, boosts, translations, time translation."""
+    rotations = np.pad(so(n), ((0, 0), (0, 2), (0, 2)))
+    shifts = [unit(n + 2, i, column) for column in (n, n + 1) for i in range(n)]
+    return np.concatenate([rotations, [*shifts, unit(n + 2, n, n + 1)]])
+
+
 def complex_gl(n: int, *, parameter: int = -1) -> IntegerArray:
     """Basis of gl(n, C), or of gl(n) over Q(sqrt(parameter)), on R^{2n}."""
     return complexify(gl(n), parameter=parameter)

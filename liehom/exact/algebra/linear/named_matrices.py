@@ -220,6 +220,18 @@ def _negative(n: int) -> IntegerArray:
 Parameter = int | str
 
 
+SPELLINGS = {
+    "schrodinger": "schroedinger", "poincare": "iso", "euclidean": "e", "se": "e", "o": "so", "galilean": "galilei",
+}  # fmt: skip
+"""Other spellings of heads of names."""
+
+
+def spelled(name: str) -> str:
+    """A name without '+' in the usual spelling; a head alone stays as it is, since E6 is a type and e6 a real form."""
+    head, bracket, rest = name.replace(" ", "").partition("(")
+    return f"{SPELLINGS.get(head.lower(), head.lower())}({rest.upper()}" if bracket else head
+
+
 def classical_matrices(kind: str, first: int, second: Parameter = 0) -> IntegerArray:
     """The matrix basis of a classical linear Lie algebra, shape (dim, N, N)."""
     sizes: list[object] = [first] if isinstance(second, str) else [first, second]
@@ -263,7 +275,7 @@ def _half(build: Callable[[int], IntegerArray]) -> Callable[[int], IntegerArray]
 
     def by_size(size: int) -> IntegerArray:
         if size % 2:
-            raise InputError(f"sp(2n,R) and sp(2n,C) are named by their even size 2n; got {size}")
+            raise InputError(f"sp(2n,R), sp(2n,C) and so*(2n) are named by their even size 2n; got {size}")
         return build(size // 2)
 
     return by_size
@@ -286,6 +298,17 @@ _BY_LETTER: dict[tuple[str, str], Callable[[int], IntegerArray]] = {
 
 CLASSICAL_KINDS = frozenset({kind for kind, _ in _BY_LETTER} | _FORMS.keys())
 """All kinds that `classical_matrices` accepts."""
+
+FAMILY_MATRICES: dict[str, Callable[..., IntegerArray]] = {
+    "e": lambda n: linear_bases.motions(linear_bases.so(n)),
+    "iso": lambda p, q: linear_bases.motions(linear_bases.so(p, q)),
+    "aff": lambda n: linear_bases.motions(linear_bases.gl(n)),
+    "galilei": linear_bases.galilei,
+    "so*": _half(linear_bases.so_star),
+    "upper": linear_bases.triangular,
+    "strict": lambda n: linear_bases.triangular(n, 1),
+}
+"""Builders of the matrices of algebras that have no scalars in their names, by the heads of the names."""
 
 EXCEPTIONAL_MATRICES: dict[str, Callable[[], IntegerArray]] = {
     "g2(2)": lambda: g2(SPLIT_OCTONIONS), "g2": g2, "f4(4)": lambda: f4(parameters=SPLIT_OCTONIONS), "f4": f4,

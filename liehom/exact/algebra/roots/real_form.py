@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, final
 from liehom.base.budget import small_integer, within
 from liehom.base.errors import CatalogError, displayed
 from liehom.base.objects import Displayed
+from liehom.exact.algebra.linear.named_matrices import spelled
 from liehom.exact.algebra.roots.diagrams import SatakeDiagram, VoganDiagram
 from liehom.exact.algebra.roots.root_system import RootSystem, parse_type, root_system
 
@@ -110,9 +111,7 @@ def canonical_ideals(name: str) -> list[str]:
 
 def parse_name(name: str) -> Parsed:
     """The parts (kind, numbers, letter) of the name of a real form."""
-    text = name.replace(" ", "")
-    if re.match(r"[EFG][2-8]\(", text):  # E6 with a character is accepted; E6 alone is a type, e6 the compact form
-        text = text[0].lower() + text[1:]
+    text = spelled(name)
     if exceptional := re.fullmatch(r"(e6|e7|e8|f4|g2)(?:\((-?\d+|C)\))?", text, re.ASCII):
         kind, character = exceptional[1], exceptional[2] or str(EXCEPTIONAL_CHARACTERS[exceptional[1]][-1])
         if character == "C":

@@ -6,18 +6,20 @@ polynomials (`PolynomialMatrix`).  Over a number field sympy's DomainMatrix comp
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import reduce
 from typing import final
 
 from liehom.base.errors import FieldError, InputError, ShapeError, UndecidedError
-from liehom.base.typing import Expression, VectorLike
+from liehom.base.typing import Expression, ScalarLike, VectorLike
 from liehom.exact.algebra.core.lie_algebra import LieAlgebra
 from liehom.exact.representations.core.representation import Representation
+from liehom.exact.scalars import grammar
 from liehom.exact.scalars.complex_parts import sympy_number
 from liehom.exact.scalars.exact_field import ExactMatrix, as_exact
-from liehom.exact.scalars.field import Matrix
+from liehom.exact.scalars.field import Matrix, MatrixLike
 from liehom.exact.scalars.polynomial_matrix import PolynomialMatrix, expression_of, polynomial_matrix
 from liehom.exact.scalars.rational import QQ
 
@@ -103,11 +105,13 @@ class SymbolicIsotropy:
         return self.basis.subs(values)
 
 
-def symbolic_isotropy(rho: Representation, point: VectorLike) -> SymbolicIsotropy:
+def symbolic_isotropy(rho: Representation, point: VectorLike | MatrixLike) -> SymbolicIsotropy:
     """Implements `Representation.symbolic_isotropy`."""
     import sympy
 
-    values = _coordinates(rho, point)
+    entries: list[Expression] = list(point)
+    read = [_read(rho, entry) for entry in entries] if any(isinstance(entry, str) for entry in entries) else point
+    values = _coordinates(rho, rho.real_point(read))
     symbols = tuple(sorted({s for v in values for s in v.free_symbols}, key=str))
     columns = [_times(rho, a, values) for a in rho.matrices]
     matrix = sympy.Matrix(rho.size, len(columns), lambda i, j: sympy.cancel(columns[j][i]))
@@ -162,6 +166,24 @@ def _lengths(rho: Representation) -> ExactMatrix | None:
     flat = as_exact(rho.field.stack_rows([a.reshape(1, size) for a in rho.matrices], size))
     form = flat @ flat.T
     return form if form.rank() == form.nrows else None
+
+
+_NAME = re.compile(r"[A-Za-z_]\w*", re.ASCII)
+
+
+def _read(rho: Representation, value: ScalarLike) -> Expression:
+    """A coordinate; names in a string are symbols, except for sqrt, the generator of the field, and i on C^n."""
+    import sympy
+
+    names, on_complex = {*_NAME.findall(str(value))} - {"sqrt"}, rho.coordinates == "complex"
+    if not isinstance(value, str) or ("i" in names and not on_complex):
+        return value
+    # the parts of a complex coordinate need real symbols
+    known = {name: sympy.I if name == "i" else sympy.Symbol(name, real=on_complex or None) for name in names}
+    if (generator := getattr(rho.field, "symbol", "")) in known:
+        known[generator] = sympy_number(rho.field, rho.field.convert(generator))
+    tree = grammar.parse(value, known)
+    return grammar.evaluate(tree, lambda n: sympy.Integer(int(n)), known, {"sqrt": sympy.sqrt})
 
 
 def _coordinates(rho: Representation, point: VectorLike) -> list[Expression]:

@@ -421,8 +421,9 @@ class Representation(Displayed, Immutable):
 
         Parameters
         ----------
-        point : sequence of sympy expressions, shape (N,)
-            Rational functions of free symbols; their coefficients may be algebraic numbers.
+        point : sequence of sympy expressions or strings, shape (N,)
+            Rational functions of free symbols, such as ``"x**2/2"``; their coefficients may be algebraic numbers.
+            On C^n the symbols are real, and n coordinates may be complex, such as ``"x + i*y"``.
 
         Raises
         ------
@@ -444,12 +445,12 @@ class Representation(Displayed, Immutable):
         >>> generic = lh.defining(lh.so(3)).symbolic_isotropy([x, y, z])
         >>> generic.dimension, generic.basis
         (1, Matrix([[z, -y, x]]))
-        >>> lh.defining(lh.so(3)).symbolic_isotropy([x, 0, 0]).nonvanishing
+        >>> lh.defining(lh.so(3)).symbolic_isotropy(["x", 0, 0]).nonvanishing
         x
         """
         from liehom.exact.representations.analysis.symbolic import symbolic_isotropy
 
-        return symbolic_isotropy(self, self.real_point(point))
+        return symbolic_isotropy(self, point)
 
     def orbit_dimension(self, point: VectorLike | MatrixLike) -> int:
         """Dimension of the orbit through a point: dim g minus the dimension of the isotropy subalgebra.

@@ -330,7 +330,7 @@ def test_catalogue_constructs_the_algebra_of_each_name(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", [
-    "iso(3)", "iso(3,x)", "galilei(0)", "galilei(2,1)", "conformal(1,2,3)", "filiform(2)", "free_nilpotent(2)",
+    "iso(1,2,3)", "iso(3,x)", "galilei(0)", "galilei(2,1)", "conformal(1,2,3)", "filiform(2)", "free_nilpotent(2)",
     "bianchi(X)", "bianchi(3)", "bianchi(I;1)", "aff(1;2)",
 ])  # fmt: skip
 def test_catalogue_name_with_invalid_parameters_raises_catalog_error(name: str) -> None:

@@ -1,6 +1,7 @@
 """Cartan decompositions: the laws of k and p, in scrambled bases, and algebras without a rational involution."""
 
 import random
+from itertools import combinations
 from typing import Any
 
 import numpy as np
@@ -9,6 +10,7 @@ import pytest
 import liehom as lh
 from liehom.base.errors import InputError, NoRationalInvolutionError, UndecidedError
 from liehom.exact.algebra.involutions.cartan_decomposition import cartan_decomposition, is_cartan_involution
+from liehom.exact.algebra.involutions.field_involutions import local_obstruction
 from liehom.exact.algebra.involutions.rational_involution import lattice_order
 from liehom.testing import random_unimodular
 
@@ -150,46 +152,93 @@ def test_an_order_leaves_a_special_sublattice_at_a_small_prime() -> None:
     assert int(order.killing_form().determinant()) % 11 != 0
 
 
+CUBIC = [-1, -2, 1, 1], [-2, 0, 1]  # x^3 + x^2 - 2x - 1 with the root t = 2 cos(2 pi/7), and s(t) = t^2 - 2
+QUARTIC = [1, 1, 1, 1, 1], [0, 0, 1]  # the fifth roots of unity, s(t) = t^2
+
+
 def division_algebra_form() -> lh.LieAlgebra:
     """The trace-zero part of the cyclic algebra (QQ(cos(2 pi/7)), s, 2) of degree 3: a form of sl(3,R)."""
-    t = np.array([[0, 0, 1], [1, 0, 2], [0, 1, -1]], dtype=object)  # x^3 + x^2 - 2x - 1 on 1, t, t^2
-    # s(t) = t^2 - 2; s on the basis 1, t, t^2
-    units = [np.linalg.matrix_power(t, 0), t, t @ t]
-    image = t @ t - 2 * units[0]
-    s = np.array([units[0][:, 0], image[:, 0], (image @ image)[:, 0]], dtype=object).T
-    return _left_multiplications(units, s)
+    return cyclic_form(*CUBIC, 2)
 
 
-def _left_multiplications(units: list[Any], s: Any) -> lh.LieAlgebra:
-    """Brackets of the elements a u^j, a in the field, with u a = s(a) u and u^3 = 2."""
+def cyclic_form(polynomial: list[int], image: list[int], value: int) -> lh.LieAlgebra:
+    """The trace-zero part of the elements c u^j, c in a cyclic field of degree n, with u c = s(c) u and u^n = value."""
+    n = len(polynomial) - 1
+    t = np.eye(n, k=-1).astype(int).astype(object)
+    t[:, -1] = [-c for c in polynomial[:-1]]
+    units = [np.linalg.matrix_power(t, k) for k in range(n)]
+    moved = sum(c * u for c, u in zip(image, units, strict=False))
+    s = np.array([np.linalg.matrix_power(moved, k)[:, 0] for k in range(n)], dtype=object).T
 
     def product(x: Any, y: Any) -> Any:  # x[j] is the coefficient vector of u^j
-        out = np.zeros((3, 3), dtype=object)
-        for i in range(3):
-            for j in range(3):
-                moved = np.linalg.matrix_power(s, i) @ y[j] if i else y[j]
-                term = sum(c * u for c, u in zip(x[i], units, strict=True)) @ moved
-                out[(i + j) % 3] += term * (2 if i + j >= 3 else 1)
+        out = np.zeros((n, n), dtype=object)
+        for i in range(n):
+            for j in range(n):
+                term = sum(c * u for c, u in zip(x[i], units, strict=True)) @ np.linalg.matrix_power(s, i) @ y[j]
+                out[(i + j) % n] += term * (value if i + j >= n else 1)
         return out
 
-    def vector(x: Any) -> list[int]:
-        return [int(v) for v in x.ravel()]
-
-    basis = [np.array([int(i == j) for j in range(9)], dtype=object).reshape(3, 3) for i in range(9)]
+    basis = [np.array([int(i == j) for j in range(n**2)], dtype=object).reshape(n, n) for i in range(n**2)]
     brackets = {
-        (i, j): dict(enumerate(vector(product(basis[i], basis[j]) - product(basis[j], basis[i]))))
-        for i in range(9)
-        for j in range(i + 1, 9)
+        (i, j): {k: int(v) for k, v in enumerate((product(x, y) - product(y, x)).ravel())}
+        for (i, x), (j, y) in combinations(enumerate(basis), 2)
     }
-    return lh.LieAlgebra(brackets, dimension=9).levi_decomposition().levi.as_algebra()
+    return lh.LieAlgebra(brackets, dimension=n**2).levi_decomposition().levi.as_algebra()
 
 
-@pytest.mark.slow
+@pytest.mark.parametrize(("field", "value", "form", "prime"), [
+    (CUBIC, 2, "sl(3,R)", 2), (CUBIC, 3, "sl(3,R)", 7), (CUBIC, 5, "sl(3,R)", 5), (QUARTIC, -3, "sl(2,H)", 3),
+    (QUARTIC, 3, "sl(4,R)", 3), (QUARTIC, -2, "sl(2,H)", 5),
+])  # fmt: skip
+def test_division_algebras_of_degree_three_and_four_have_no_rational_involution(
+    field: tuple[list[int], list[int]], value: int, form: str, prime: int
+) -> None:
+    """Their local invariants at a prime have order 3 or 4, so they are not isomorphic to their opposites."""
+    algebra = cyclic_form(*field, value)
+    n = algebra.dimension
+    for current in (algebra, algebra.change_of_basis(np.tri(n, dtype=int).tolist())):
+        assert current.real_form() == form
+        with pytest.raises(NoRationalInvolutionError, match="by proof") as caught:
+            cartan_decomposition(current, extend=False)
+        assert f"over the {prime}-adic numbers" in caught.value.reason
+
+
+@pytest.mark.parametrize(("field", "value"), [
+    (CUBIC, 1), (CUBIC, 8), (CUBIC, 13), (QUARTIC, -1), (QUARTIC, -9), (QUARTIC, -4),
+])  # fmt: skip
+def test_algebras_that_are_isomorphic_to_their_opposites_are_not_excluded(
+    field: tuple[list[int], list[int]], value: int
+) -> None:
+    """The cubic ones are split, since the values are norms; the values of the quartic ones are squares up to signs."""
+    algebra = cyclic_form(*field, value)
+    for thorough in (False, True):
+        order = algebra.change_of_basis(lattice_order(algebra, np.eye(algebra.dimension), thorough=thorough))
+        assert local_obstruction(order) is None
+
+
+@pytest.mark.parametrize("p", [2, 3, 5, 7])
+@pytest.mark.parametrize("name", ["sl(3)", "sl(4)", "sl(2,H)", "su(2,1)", "so(3,3)"])
+def test_an_order_that_is_not_maximal_excludes_nothing(name: str, p: int) -> None:
+    """Matrices that are upper triangular modulo p; multiples of p; and random sublattices."""
+    natural = form(name)
+    n, rng = natural.dimension, np.random.default_rng(p)
+    scales = [np.where(rng.integers(0, 2, n), p, 1), np.full(n, p)]
+    if name in ("sl(3)", "sl(4)"):  # the elements E_kl come first, row by row
+        size = int(name[3])
+        lower = [p if i > j else 1 for i in range(size) for j in range(size) if i != j]
+        scales.append(np.array(lower + [1] * (size - 1)))
+    for scale in scales:
+        algebra = natural.change_of_basis(np.diag(scale).tolist())
+        order = algebra.change_of_basis(lattice_order(algebra, np.eye(n), thorough=False))
+        assert local_obstruction(order) is None
+        assert algebra.table.den != 1 or local_obstruction(algebra) is None
+
+
 def test_division_algebra_of_degree_three_has_no_rational_cartan_involution() -> None:
     algebra = division_algebra_form()
     assert algebra.real_form() == "sl(3,R)"
-    with pytest.raises(UndecidedError, match="extend=True"):
-        cartan_decomposition(algebra)
+    with pytest.raises(NoRationalInvolutionError, match="extend=True looks for it"):
+        cartan_decomposition(algebra, extend=False)
     k, _ = cartan_decomposition(algebra.over(lh.RR))
     assert k.dimension == 3
 
@@ -213,7 +262,7 @@ def test_compact_and_noncompact_places_exclude_a_rational_one(values: tuple[tupl
     for algebra in (natural, natural.change_of_basis(rational_rows(6, 1))):
         if algebra.real_form() == "so(3) + sl(2,R)":
             with pytest.raises(NoRationalInvolutionError, match="dim p is 2 at one real place") as caught:
-                cartan_decomposition(algebra)
+                cartan_decomposition(algebra, extend=False)
             assert "0 at another" in caught.value.reason
             k, p = cartan_decomposition(algebra.over(lh.RR))
             assert (k.dimension, p.dimension) == (4, 2)
@@ -256,10 +305,10 @@ def test_places_of_the_centroid_exclude_a_cartan_involution(polynomial: list[int
         check_laws(algebra, cartan_decomposition(algebra))
         return
     with pytest.raises(NoRationalInvolutionError, match=reason):
-        cartan_decomposition(algebra)
+        cartan_decomposition(algebra, extend=False)
 
 
 def test_a_reason_for_one_ideal_is_one_for_the_sum() -> None:
     algebra = lh.direct_sum(lh.so(4, 1), quaternions_over(2, (0, 1), (1, 0), (1, 0)))
     with pytest.raises(NoRationalInvolutionError, match="ideal of dimension 6"):
-        cartan_decomposition(algebra.change_of_basis(rational_rows(16, 1)))
+        cartan_decomposition(algebra.change_of_basis(rational_rows(16, 1)), extend=False)

@@ -14,7 +14,10 @@ from liehom.exact.algebra.involutions.field_involutions import elliptic_elements
 from liehom.exact.algebra.involutions.rational_involution import lattice_order
 from liehom.exact.algebra.structure.ideals import over_extension
 from tests.exact.algebra.involutions.test_cartan_decomposition import (
+    CUBIC,
+    QUARTIC,
     check_laws,
+    cyclic_form,
     division_algebra_form,
     quaternions_over,
 )
@@ -99,11 +102,15 @@ def test_the_levi_factor_of_the_affine_algebra_of_sl4_over_the_complex_numbers()
     assert is_cartan_involution(levi, decomposition.theta)
 
 
-@pytest.mark.parametrize("seed", [0, 1])
-def test_a_division_algebra_of_degree_three_has_one_over_a_cubic_field(seed: int) -> None:
-    algebra = in_dense_basis(division_algebra_form(), seed)
-    decomposition = cartan_decomposition(algebra, extend=True)
-    assert (decomposition.field.degree, decomposition.k.dimension) == (3, 3)
+@pytest.mark.parametrize(("field", "value", "degree", "compact"), [(CUBIC, 2, 3, 3), (QUARTIC, -3, 2, 10)])
+@pytest.mark.parametrize("seed", [0, 2])
+def test_a_division_algebra_has_one_over_a_larger_field(
+    field: tuple[list[int], list[int]], value: int, degree: int, compact: int, seed: int
+) -> None:
+    """A cubic field for a form of sl(3,R), a quadratic one for a form of so(5,1)."""
+    algebra = in_dense_basis(cyclic_form(*field, value), seed)
+    decomposition = cartan_decomposition(algebra)
+    assert (decomposition.field.degree, decomposition.k.dimension) == (degree, compact)
     check_laws(algebra.over(decomposition.field), decomposition)
 
 
@@ -111,8 +118,8 @@ def test_where_no_rational_one_exists_the_larger_field_is_named() -> None:
     natural = quaternions_over(2, (0, 1), (1, 0), (1, 0))
     for algebra in (natural, in_dense_basis(natural, 1)):
         with pytest.raises(NoRationalInvolutionError):
-            algebra.cartan_decomposition()
-        decomposition = algebra.cartan_decomposition(extend=True)
+            algebra.cartan_decomposition(extend=False)
+        decomposition = algebra.cartan_decomposition()
         assert (decomposition.field, decomposition.k.dimension) == (lh.number_field("sqrt(2)"), 4)
         check_laws(algebra.over(decomposition.field), decomposition)
         k = algebra.maximal_compact_subalgebra(extend=True)

@@ -9,7 +9,7 @@ import sympy
 from hypothesis import given, settings, strategies as st
 
 import liehom as lh
-from liehom.base.errors import InputError
+from liehom.base.errors import InputError, ParseError
 from liehom.exact.representations.core.representation import Representation
 from tests.sampling import examples
 
@@ -137,6 +137,39 @@ def test_a_number_field_gives_one_minor() -> None:
     generic = lh.defining("so(3)").over(lh.number_field("sqrt(2)")).symbolic_isotropy([X, "sqrt(2)", 0])
     assert not generic.sharp and generic.exact_dimension == generic.nonvanishing
     assert sympy.simplify(generic.matrix * generic.basis.T) == sympy.zeros(3, 1)
+
+
+@pytest.mark.parametrize(("strings", "point"), [
+    (["x", "y", 0], [X, Y, 0]),
+    (["x**2/(y + 1)", "-z*sqrt(2)", "1/2"], [X**2 / (Y + 1), -Z * sympy.sqrt(2), sympy.Rational(1, 2)]),
+    ([X, "y", "0"], [X, Y, 0]),
+])  # fmt: skip
+def test_names_in_strings_are_symbols(strings: Any, point: Any) -> None:
+    rho = lh.defining("so(3)")
+    assert rho.symbolic_isotropy(strings) == rho.symbolic_isotropy(point)
+
+
+def test_the_generator_of_the_field_is_not_a_symbol() -> None:
+    rho = lh.defining("so(3)").over(lh.number_field([-2, 0, 0, 1], (1, 2), "a"))
+    assert rho.symbolic_isotropy(["x*a", "a", 0]).symbols == (X,)
+    assert rho.symbolic_isotropy(["x*a", "a", 0]).matrix.subs(X, 1) == rho.symbolic_isotropy(["a", "a", 0]).matrix
+
+
+def test_strings_with_symbols_are_complex_coordinates() -> None:
+    rho = lh.defining("su(2)")
+    x, y = sympy.symbols("x y", real=True)
+    assert rho.symbolic_isotropy(["x + i*y", "1/2"]) == rho.symbolic_isotropy([x, y, "1/2", 0])
+    with pytest.raises(ParseError, match="'i' is not known"):
+        lh.defining("so(3)").symbolic_isotropy(["i", "x", 0])
+
+
+@pytest.mark.parametrize(("string", "error", "message"), [
+    ("x y", ParseError, "'x y' is not a value"), ("0.5*x", ParseError, "unexpected character '.'"),
+    ("sqrt(x)", InputError, "coordinate 0, sqrt"), ("x**y", ParseError, "exponent must be an integer"),
+])  # fmt: skip
+def test_strings_that_are_not_rational_functions_are_refused(string: str, error: type[Exception], message: str) -> None:
+    with pytest.raises(error, match=message):
+        lh.defining("so(3)").symbolic_isotropy([string, 0, 0])
 
 
 def test_results_are_pickled() -> None:
