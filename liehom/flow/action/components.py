@@ -18,6 +18,7 @@ from liehom.flow.action.expression import ComponentLike, Evaluation, Value, comp
 from liehom.flow.series.arrays import as_values, is_exact, is_jax, is_lazy, is_traced, namespace, zeros
 from liehom.flow.series.jet import Jet
 from liehom.flow.series.jet_functions import expanded_by_jax
+from liehom.flow.tracing.array import Traced
 
 # How a user's function of a point is called: f(m), f(m, t), f(m, t, args) or f(m, args), by its parameters.
 
@@ -100,6 +101,29 @@ def called_as_event(function: Callable[..., Any], args: Pytree, what: str) -> Ev
             return (lambda t, y: function(y, t, last)) if swapped else (lambda t, y: function(t, y, last))
         function = partial(function, args=last)
     return (lambda t, y: function(y, t)) if swapped else function
+
+
+def guarded(function: Callable[..., Any], what: str, *values: Values | Real) -> Any:
+    """The value of a user's function of points and times, which it reads and cannot change."""
+    try:
+        return function(*map(_read_only, values))
+    except ValueError as error:
+        if "read-only" not in str(error):
+            raise
+        raise InputError(
+            f"{what} writes into its argument ({error}), a point or time of the run: write into a copy, as after "
+            "m = m.copy(), or use m = 2 * m in place of m *= 2"
+        ) from error
+
+
+def _read_only(x: Any) -> Any:
+    if type(x) is Traced:
+        return Traced(x.tape, _read_only(x.entries))
+    if not isinstance(x, np.ndarray):
+        return x  # Jets and JAX arrays are not written into
+    view = x.view()
+    view.flags.writeable = False
+    return view
 
 
 def takes_time(function: Callable[..., Any], what: str = "the function") -> bool:
@@ -217,7 +241,7 @@ class Components:
         if isinstance(m, Jet):
             time = Jet.constant(t, m.order) if is_jax(t) else t
             try:
-                components = self._function(m, time)
+                components = guarded(self._function, self.what, m, time)
             except TypeError as error:  # functions of JAX do not take Jets
                 components = self._expanded_by_jax(m, time, error)
             return self._checked(components, m)
@@ -227,7 +251,7 @@ class Components:
             xp = namespace(point, t, *self._jax_leaves)
             components = self(Jet.constant(xp.asarray(point), 0), t)
             return components.value if isinstance(components, Jet) else xp.asarray(components)
-        return self._checked(self._function(point, t), point)
+        return self._checked(guarded(self._function, self.what, point, t), point)
 
     def _expanded_by_jax(self, m: Jet, t: Any, error: TypeError) -> Jet:
         """The components at a Jet of JAX arrays, for a function written with the functions of JAX."""

@@ -13,7 +13,7 @@ import numpy as np
 from liehom.base.errors import InputError, LiehomError, ShapeError, TangencyError, displayed
 from liehom.base.objects import Immutable
 from liehom.base.typing import Array, IntegerArray, Pytree, Real, ScalarLike, Values, ValuesLike
-from liehom.flow.action.components import Components, GeneratorLike, checked_form, joined, of_trajectory
+from liehom.flow.action.components import Components, GeneratorLike, checked_form, guarded, joined, of_trajectory
 from liehom.flow.action.frames import inner_product
 from liehom.flow.action.maps import action_map, inverse, solve
 from liehom.flow.door import LieAlgebra, Representation, batched_ranks, coadjoint
@@ -501,7 +501,7 @@ def _differentiated(H: Hamiltonian, n: int) -> tuple[Callable[[Any, Any], Values
     tape = Tape()
     m, t = Traced.inputs(tape, 0, n), Traced(tape, tape.input(n))
     try:
-        energy = joined(function(m, t) if timed else function(m), m)
+        energy = joined(guarded(function, "H", *((m, t) if timed else (m,))), m)
     except (LiehomError, TypeError, AttributeError, ValueError, IndexError) as error:
         raise InputError(
             f"H cannot be differentiated, because it does not run on tracers ({type(error).__name__}: {error}): write "
