@@ -11,12 +11,12 @@ from typing import Any, NamedTuple, TypeAlias, final
 import numpy as np
 import numpy.typing as npt
 
-from liehom.base.errors import InputError, ShapeError, displayed
+from liehom.base.errors import InputError, LiehomError, SeriesError, ShapeError, displayed, refuse_masked
 from liehom.base.pytrees import leaves, mapped, unwrapped
 from liehom.base.typing import Array, Pytree, Real, Values, ValuesLike
 from liehom.flow.action.expression import ComponentLike, Evaluation, Value, compiled
 from liehom.flow.series.arrays import as_values, is_exact, is_jax, is_lazy, is_traced, namespace, zeros
-from liehom.flow.series.jet import Jet
+from liehom.flow.series.jet import WITHOUT_SERIES, Jet
 from liehom.flow.series.jet_functions import expanded_by_jax
 from liehom.flow.tracing.array import Traced
 
@@ -110,10 +110,8 @@ def guarded(function: Callable[..., Any], what: str, *values: Values | Real) -> 
     except ValueError as error:
         if "read-only" not in str(error):
             raise
-        raise InputError(
-            f"{what} writes into its argument ({error}), a point or time of the run: write into a copy, as after "
-            "m = m.copy(), or use m = 2 * m in place of m *= 2"
-        ) from error
+        remedy = "write into a copy, as after m = m.copy(), or use m = 2 * m in place of m *= 2"
+        raise InputError(f"{what} writes into its argument ({error}), a point or time of the run: {remedy}") from error
 
 
 def _read_only(x: Any) -> Any:
@@ -180,6 +178,7 @@ class Components:
         self._function: Evaluated
         self._form: CallForm | None = None
         self._jax_leaves: tuple[Values, ...] = ()
+        refuse_masked(what, source)
         if callable(source):
             self._form, self.time_dependent = checked_form(source, what, time_dependent)
             self._function = called(source, self._form, self.time_dependent)
@@ -244,6 +243,10 @@ class Components:
                 components = guarded(self._function, self.what, m, time)
             except TypeError as error:  # functions of JAX do not take Jets
                 components = self._expanded_by_jax(m, time, error)
+            except ValueError as error:
+                if isinstance(error, LiehomError):
+                    raise
+                raise SeriesError(f"{self.what} has no Taylor series here ({error}); {WITHOUT_SERIES}") from error
             return self._checked(components, m)
         point: Values = as_values(m)
         if is_jax(point) or is_jax(t) or self._jax_leaves:
@@ -366,6 +369,7 @@ def joined(x: Any, m: Values) -> Any:
     if isinstance(x, Jet) or is_lazy(x):
         return x
     if isinstance(x, np.ndarray):
+        refuse_masked("a value of the field", x)
         if x.dtype != object or not any(isinstance(entry, Jet) or is_lazy(entry) for entry in x.flat):
             return x
         return _joined([joined(part, m) for part in x], 0) if x.ndim else x.item()

@@ -103,6 +103,8 @@ def integrate(
 
     Warns
     -----
+    RuntimeWarning
+        If a trajectory ends with status -1, with the message of the solution.
     OrderWarning
         If a `Corrected` step does not keep its order, that is, if a linear system of its corrections has no solution
         or a step comes within two steps of the cone on which the range condition fails (docs/theory/correctors.md).

@@ -491,3 +491,15 @@ def test_a_copy_may_be_written_into_and_values_are_free() -> None:
 
     result = components(psi)(POINT)
     assert result.tolist() == [0.0, -0.7, 1.1] and POINT[0] == 0.3
+
+
+def test_psi_without_a_series_is_told_which_step_takes_it() -> None:
+    def spline(t: Any) -> Any:
+        return np.asarray([t, 1.0], dtype=float)[0] if isinstance(t, lh.Jet) else np.interp(t, [0.0, 1.0], [0.0, 1.0])
+
+    rho = lh.adjoint(lh.so(3))
+    for psi in (lambda m: np.where(m > 0, m, 0.0), lambda m, t: spline(t) * m):
+        field = lh.GeneratorField(rho, psi)
+        with pytest.raises(SeriesError, match="take step='rk45', a Runge-Kutta step"):
+            lh.integrate(field, (0, 1), [0.6, 0.0, 0.8])
+        assert lh.integrate(field, (0, 1), [0.6, 0.0, 0.8], step="rk45").success
