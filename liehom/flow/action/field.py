@@ -377,6 +377,7 @@ def check_point(representation: Representation, m: ValuesLike, *, fixed: bool = 
     if not bool(np.all(np.isfinite(point))):
         raise InputError(f"the point {values} is not finite")
     action = action_map(representation)
+    _check_size(point, values.dtype, action.scale)
     bound = RANK_RTOL * action.scale * np.linalg.norm(point, axis=-1)
     ranks: IntegerArray = batched_ranks(action.right(point), bound)
     if not fixed and bool(np.any(ranks == 0)):
@@ -385,6 +386,20 @@ def check_point(representation: Representation, m: ValuesLike, *, fixed: bool = 
             f"the group leaves the point {values[index]}{of_trajectory(index)} fixed: its orbit has dimension 0"
         )
     return ranks
+
+
+def _check_size(point: Array, kind: np.dtype[Any], scale: float) -> None:
+    """Raise InputError if squares of coordinates, or of errors of their last digit, are not floats of this type."""
+    info = np.finfo(kind if kind == np.float32 else np.float64)
+    least, most = float(info.tiny) ** 0.5 / float(info.eps), float(info.max) ** 0.5 * float(info.eps)
+    size = np.abs(point).max(axis=-1, initial=0.0)
+    bad = (size > most / max(scale, 1.0)) | ((size > 0) & (size < least))
+    if bool(bad.any()):
+        index = tuple(int(i) for i in np.argwhere(bad)[0])
+        raise InputError(
+            f"the point{of_trajectory(index)} has the largest coordinate {size[index]:.3g}, expected 0 or a number "
+            f"from {least:.2g} to {most / max(scale, 1.0):.2g}, whose square is a float: take other units"
+        )
 
 
 # Hamiltonian fields on the dual of a Lie algebra, with its Lie-Poisson bracket.

@@ -83,9 +83,8 @@ class Quadrics:
         gradient = _times(m, block.form)
         square, missing = (gradient * gradient).sum(axis=-1), level - (m * gradient).sum(axis=-1)
         # (m + x g)^T Q (m + x g) = level is a quadratic equation in x
-        curvature = self._value(block, gradient)
-        share = missing / (square + namespace(m).sqrt(square * square + missing * curvature))
-        return m + share[..., None] * gradient
+        share, curvature = missing / square, self._value(block, gradient) / square
+        return m + (share / (1 + namespace(m).sqrt(1 + share * curvature)))[..., None] * gradient
 
 
 def quadric_orbits(representation: Representation, dimension: int | IntegerArray, points: Array) -> Quadrics | None:
@@ -251,7 +250,9 @@ def _holds(action: Action, inverse: TightInverse, points: Array) -> bool:
     columns = action.infinitesimal.right(points)
     scale = np.abs(over := ((points @ inverse.trace) * points).sum(axis=-1))
     square = columns @ inverse.gram_inverse @ np.swapaxes(columns, 1, 2)
-    # lambda is at most |K| |A G^-1 A^T|; below round-off of that, as for forms that vanish on the tangent space, it is 0
+    # lambda is at most |K| |A G^-1 A^T|, and 0 for a form that vanishes on the tangent space
     least = GRADIENT_RTOL * np.linalg.norm(inverse.form, 2) * np.linalg.norm(square, axis=(1, 2))
     defect = np.abs(square @ inverse.form @ columns - over[:, None, None] * columns).max(axis=(1, 2), initial=0.0)
-    return bool(((scale > least) & (defect <= TIGHT_RTOL * scale * np.abs(columns).max(axis=(1, 2), initial=0.0))).all())
+    return bool(
+        ((scale > least) & (defect <= TIGHT_RTOL * scale * np.abs(columns).max(axis=(1, 2), initial=0.0))).all()
+    )

@@ -143,9 +143,10 @@ LARGEST_SUM = 14
 
 def sum_of_copies(rng: random.Random) -> lh.Representation:
     """One or two representations, each acting on up to three copies of its space: on the columns of a matrix."""
-    chosen = [(SUMMANDS[name], rng.choice([1, 2, 2, 3])) for name in rng.sample(sorted(SUMMANDS), rng.choice([1, 2, 2]))]
+    names = rng.sample(sorted(SUMMANDS), rng.choice([1, 2, 2]))
+    chosen = [(SUMMANDS[name], rng.choice([1, 2, 2, 3])) for name in names]
     while sum(len(basis[0]) * copies for basis, copies in chosen) > LARGEST_SUM:
-        chosen = [(basis, max(copies - 1, 1)) for basis, copies in chosen][: 2 if chosen[0][1] > 1 else 1]
+        chosen = [(basis, max(copies - 1, 1)) for basis, copies in chosen]
     if all(len(basis) == 1 for basis, _ in chosen) and rng.random() < 0.5:  # one element that acts on all of them
         return lh.Representation.from_matrices([block_diag(*[b[0] for b, copies in chosen for _ in range(copies)])])
     lone = [[block_diag(*[a] * copies) for a in basis] for basis, copies in chosen]
