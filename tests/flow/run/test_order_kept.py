@@ -223,7 +223,8 @@ FINER = np.array([1 / 200, 1 / 400, 1 / 800])
 
 def suspicious(field: lh.GeneratorField, starts: Any, sizes: Any) -> tuple[Any, Any]:
     """Masks: trajectories that neither reach order 4 to 0.3 on the last halving nor say so; those that say so."""
-    reference = lh.integrate(field, (0, 1), starts, step=lh.LieTaylor(8), dt=1 / 40, t_eval=[1.0])
+    # fixed sizes are not enough for trajectories that grow: the error of the reference was taken for that of the step
+    reference = quietly(field, (0, 1), starts, step=lh.Taylor(16), rtol=1e-13, atol=0, t_eval=[1.0]).sol
     points = np.broadcast_to(starts, (len(sizes), *starts.shape))
     sol, _ = quietly(field, (0, 1), points, step=STEP, dt=sizes[:, None], t_eval=[1.0])
     errors = np.linalg.norm(sol.y[..., 0] - reference.y[..., 0], axis=-1) / np.linalg.norm(starts, axis=-1)
@@ -244,6 +245,7 @@ def test_a_family_of_points_that_approaches_the_cone_has_no_silent_failure() -> 
 @given(st.integers(0, 10**6), st.sampled_from(["so(2,1)", "so(3,1)", "sl(2)", "gl(2)", "sp(4,R)"]))
 @settings(max_examples=examples(20), deadline=None, phases=[Phase.explicit, Phase.reuse, Phase.generate])
 @example(276, "sl(2)")  # the path ends on the cone
+@example(3774, "sl(2)")  # a trajectory that grows sixteenfold has its order from dt = 1/400 on
 def test_no_random_problem_fails_silently(seed: int, name: str) -> None:
     rho = lh.defining(name)
     starts = np.random.default_rng(seed + 1).normal(size=(8, rho.size))
