@@ -45,14 +45,6 @@ class InputError(LiehomError, ValueError):
     """An argument has a wrong value: a parameter out of range, a shape that does not fit, a bad option."""
 
 
-def refuse_masked(what: str, value: object) -> None:
-    """Raise `InputError` if a value, or an entry of a list, is a masked array of numpy, whose mask would be lost."""
-    for x in value if isinstance(value, list | tuple) else ():
-        refuse_masked(what, x)
-    if hasattr(value, "filled") and hasattr(value, "mask"):
-        raise InputError(f"{what} is a masked array, and a masked entry has no number: fill it, or leave it out")
-
-
 class ShapeError(InputError):
     """An array, vector or matrix has the wrong shape or length."""
 

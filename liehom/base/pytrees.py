@@ -15,7 +15,8 @@ from typing import Any, NamedTuple, TypeVar, final
 import numpy as np
 import numpy.typing as npt
 
-from liehom.base.errors import InputError, ShapeError, displayed, refuse_masked
+from liehom.base.errors import InputError, ShapeError, displayed
+from liehom.base.objects import refuse_masked
 from liehom.base.typing import Pytree
 
 T = TypeVar("T")

@@ -11,7 +11,8 @@ from typing import Any, NamedTuple, TypeAlias, final
 import numpy as np
 import numpy.typing as npt
 
-from liehom.base.errors import InputError, LiehomError, SeriesError, ShapeError, displayed, refuse_masked
+from liehom.base.errors import InputError, LiehomError, SeriesError, ShapeError, displayed
+from liehom.base.objects import refuse_masked
 from liehom.base.pytrees import leaves, mapped, unwrapped
 from liehom.base.typing import Array, Pytree, Real, Values, ValuesLike
 from liehom.flow.action.expression import ComponentLike, Evaluation, Value, compiled

@@ -11,7 +11,8 @@ from typing import Any, TypedDict
 import numpy as np
 import numpy.typing as npt
 
-from liehom.base.errors import InputError, LiehomError, ShapeError, displayed, refuse_masked
+from liehom.base.errors import InputError, LiehomError, ShapeError, displayed
+from liehom.base.objects import refuse_masked
 from liehom.base.pytrees import Leaf, PerTrajectory, leaves, mapped, unwrapped
 from liehom.base.typing import Array, IntegerArray, Pytree, Values
 from liehom.flow.action.field import GeneratorField, check_point

@@ -12,7 +12,8 @@ import numpy as np
 import numpy.typing as npt
 
 from liehom.base.budget import in_time
-from liehom.base.errors import InputError, displayed, refuse_masked
+from liehom.base.errors import InputError, displayed
+from liehom.base.objects import refuse_masked
 from liehom.base.typing import Array, BooleanArray, IntegerArray
 from liehom.flow.run.events import EventFunction
 

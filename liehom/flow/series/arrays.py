@@ -16,7 +16,8 @@ import numpy as np
 import numpy.typing as npt
 from numpy.typing import ArrayLike
 
-from liehom.base.errors import FieldError, SeriesError, SingularError, refuse_masked
+from liehom.base.errors import FieldError, SeriesError, SingularError
+from liehom.base.objects import refuse_masked
 from liehom.base.typing import Number, ObjectArray, Values
 from liehom.flow.tracing.array import Traced
 from liehom.flow.tracing.lattice import LatticeTraced
