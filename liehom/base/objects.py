@@ -9,6 +9,17 @@ from collections.abc import Callable, Iterable, Sequence
 from importlib import import_module
 from typing import Any, cast
 
+from liehom.base.errors import InputError
+
+
+def refuse_masked(what: str, value: object) -> None:
+    """Raise `InputError` if a value, or an entry of a list, is a masked array of numpy, whose mask would be lost."""
+    for x in value if isinstance(value, list | tuple) else ():
+        refuse_masked(what, x)
+    if hasattr(value, "filled") and hasattr(value, "mask"):
+        raise InputError(f"{what} is a masked array, and a masked entry has no number: fill it, or leave it out")
+
+
 # Immutable: base of the classes whose public attributes are set once, by their constructor.
 
 _UNSET = object()

@@ -16,6 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from liehom.base.errors import InputError, ShapeError, displayed
+from liehom.base.objects import refuse_masked
 from liehom.base.typing import Pytree
 
 T = TypeVar("T")
@@ -171,6 +172,7 @@ def check_numbers(tree: Pytree, lead: tuple[int, ...]) -> None:
     """
     for path, leaf in leaves(tree):
         value = leaf.value if isinstance(leaf, PerTrajectory) else leaf
+        refuse_masked(path, value)
         kind = getattr(getattr(value, "dtype", None), "kind", "O")
         if isinstance(value, bool | int | float):
             continue

@@ -11,13 +11,15 @@ from typing import Any, NamedTuple, TypeAlias, final
 import numpy as np
 import numpy.typing as npt
 
-from liehom.base.errors import InputError, ShapeError, displayed
+from liehom.base.errors import InputError, LiehomError, SeriesError, ShapeError, displayed
+from liehom.base.objects import refuse_masked
 from liehom.base.pytrees import leaves, mapped, unwrapped
 from liehom.base.typing import Array, Pytree, Real, Values, ValuesLike
 from liehom.flow.action.expression import ComponentLike, Evaluation, Value, compiled
 from liehom.flow.series.arrays import as_values, is_exact, is_jax, is_lazy, is_traced, namespace, zeros
-from liehom.flow.series.jet import Jet
+from liehom.flow.series.jet import WITHOUT_SERIES, Jet
 from liehom.flow.series.jet_functions import expanded_by_jax
+from liehom.flow.tracing.array import Traced
 
 # How a user's function of a point is called: f(m), f(m, t), f(m, t, args) or f(m, args), by its parameters.
 
@@ -102,6 +104,27 @@ def called_as_event(function: Callable[..., Any], args: Pytree, what: str) -> Ev
     return (lambda t, y: function(y, t)) if swapped else function
 
 
+def guarded(function: Callable[..., Any], what: str, *values: Values | Real) -> Any:
+    """The value of a user's function of points and times, which it reads and cannot change."""
+    try:
+        return function(*map(_read_only, values))
+    except ValueError as error:
+        if "read-only" not in str(error):
+            raise
+        remedy = "write into a copy, as after m = m.copy(), or use m = 2 * m in place of m *= 2"
+        raise InputError(f"{what} writes into its argument ({error}), a point or time of the run: {remedy}") from error
+
+
+def _read_only(x: Any) -> Any:
+    if type(x) is Traced:
+        return Traced(x.tape, _read_only(x.entries))
+    if not isinstance(x, np.ndarray):
+        return x  # Jets and JAX arrays are not written into
+    view = x.view()
+    view.flags.writeable = False
+    return view
+
+
 def takes_time(function: Callable[..., Any], what: str = "the function") -> bool:
     """Whether a function is called with (m, t), and not with m alone."""
     return call_form(function, what).time is not None
@@ -156,6 +179,7 @@ class Components:
         self._function: Evaluated
         self._form: CallForm | None = None
         self._jax_leaves: tuple[Values, ...] = ()
+        refuse_masked(what, source)
         if callable(source):
             self._form, self.time_dependent = checked_form(source, what, time_dependent)
             self._function = called(source, self._form, self.time_dependent)
@@ -217,9 +241,13 @@ class Components:
         if isinstance(m, Jet):
             time = Jet.constant(t, m.order) if is_jax(t) else t
             try:
-                components = self._function(m, time)
+                components = guarded(self._function, self.what, m, time)
             except TypeError as error:  # functions of JAX do not take Jets
                 components = self._expanded_by_jax(m, time, error)
+            except ValueError as error:
+                if isinstance(error, LiehomError):
+                    raise
+                raise SeriesError(f"{self.what} has no Taylor series here ({error}); {WITHOUT_SERIES}") from error
             return self._checked(components, m)
         point: Values = as_values(m)
         if is_jax(point) or is_jax(t) or self._jax_leaves:
@@ -227,7 +255,7 @@ class Components:
             xp = namespace(point, t, *self._jax_leaves)
             components = self(Jet.constant(xp.asarray(point), 0), t)
             return components.value if isinstance(components, Jet) else xp.asarray(components)
-        return self._checked(self._function(point, t), point)
+        return self._checked(guarded(self._function, self.what, point, t), point)
 
     def _expanded_by_jax(self, m: Jet, t: Any, error: TypeError) -> Jet:
         """The components at a Jet of JAX arrays, for a function written with the functions of JAX."""
@@ -342,6 +370,7 @@ def joined(x: Any, m: Values) -> Any:
     if isinstance(x, Jet) or is_lazy(x):
         return x
     if isinstance(x, np.ndarray):
+        refuse_masked("a value of the field", x)
         if x.dtype != object or not any(isinstance(entry, Jet) or is_lazy(entry) for entry in x.flat):
             return x
         return _joined([joined(part, m) for part in x], 0) if x.ndim else x.item()

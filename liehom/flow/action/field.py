@@ -13,7 +13,7 @@ import numpy as np
 from liehom.base.errors import InputError, LiehomError, ShapeError, TangencyError, displayed
 from liehom.base.objects import Immutable
 from liehom.base.typing import Array, IntegerArray, Pytree, Real, ScalarLike, Values, ValuesLike
-from liehom.flow.action.components import Components, GeneratorLike, checked_form, joined, of_trajectory
+from liehom.flow.action.components import Components, GeneratorLike, checked_form, guarded, joined, of_trajectory
 from liehom.flow.action.frames import inner_product
 from liehom.flow.action.maps import action_map, inverse, solve
 from liehom.flow.door import LieAlgebra, Representation, batched_ranks, coadjoint
@@ -377,6 +377,7 @@ def check_point(representation: Representation, m: ValuesLike, *, fixed: bool = 
     if not bool(np.all(np.isfinite(point))):
         raise InputError(f"the point {values} is not finite")
     action = action_map(representation)
+    _check_size(point, values.dtype, action.scale)
     bound = RANK_RTOL * action.scale * np.linalg.norm(point, axis=-1)
     ranks: IntegerArray = batched_ranks(action.right(point), bound)
     if not fixed and bool(np.any(ranks == 0)):
@@ -385,6 +386,20 @@ def check_point(representation: Representation, m: ValuesLike, *, fixed: bool = 
             f"the group leaves the point {values[index]}{of_trajectory(index)} fixed: its orbit has dimension 0"
         )
     return ranks
+
+
+def _check_size(point: Array, kind: np.dtype[Any], scale: float) -> None:
+    """Raise InputError if squares of coordinates, or of errors of their last digit, are not floats of this type."""
+    info = np.finfo(kind if kind == np.float32 else np.float64)
+    least, most = float(info.tiny) ** 0.5 / float(info.eps), float(info.max) ** 0.5 * float(info.eps)
+    size = np.abs(point).max(axis=-1, initial=0.0)
+    bad = (size > most / max(scale, 1.0)) | ((size > 0) & (size < least))
+    if bool(bad.any()):
+        index = tuple(int(i) for i in np.argwhere(bad)[0])
+        raise InputError(
+            f"the point{of_trajectory(index)} has the largest coordinate {size[index]:.3g}, expected 0 or a number "
+            f"from {least:.2g} to {most / max(scale, 1.0):.2g}, whose square is a float: take other units"
+        )
 
 
 # Hamiltonian fields on the dual of a Lie algebra, with its Lie-Poisson bracket.
@@ -501,7 +516,7 @@ def _differentiated(H: Hamiltonian, n: int) -> tuple[Callable[[Any, Any], Values
     tape = Tape()
     m, t = Traced.inputs(tape, 0, n), Traced(tape, tape.input(n))
     try:
-        energy = joined(function(m, t) if timed else function(m), m)
+        energy = joined(guarded(function, "H", *((m, t) if timed else (m,))), m)
     except (LiehomError, TypeError, AttributeError, ValueError, IndexError) as error:
         raise InputError(
             f"H cannot be differentiated, because it does not run on tracers ({type(error).__name__}: {error}): write "

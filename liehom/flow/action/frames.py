@@ -347,6 +347,7 @@ def tight_frame(action: ActionLike, points: Array, rank: int, seed: int = 0) -> 
     """
     if rank < 2 or not len(points):
         return None
+    points = points / np.abs(points).max(axis=-1, keepdims=True)  # the conditions are of degree 3 in them
     rng = np.random.default_rng((seed, OWN_STREAM))
     basis = action.inner_product.orthonormal_basis()
     rows = np.arange(max(len(points), SAMPLES)) % len(points)

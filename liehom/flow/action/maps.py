@@ -174,7 +174,7 @@ class FieldMap:
         return matrix if self._rest is None or x.dtype != np.longdouble else matrix + getattr(self._rest, side)(x)
 
     def _apply(self, x: Values, y: Any) -> Values:
-        if self._table is not None and type(x) is np.ndarray and x.dtype == y.dtype == np.float64:
+        if self._table is not None and type(x) is type(y) is np.ndarray and x.dtype == y.dtype == np.float64:
             if x.ndim == y.ndim == 1:
                 return y.dot(x.dot(self._table).reshape(self.shape[1:]))
             if self.works_by_columns(x, y):

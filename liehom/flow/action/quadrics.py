@@ -83,9 +83,8 @@ class Quadrics:
         gradient = _times(m, block.form)
         square, missing = (gradient * gradient).sum(axis=-1), level - (m * gradient).sum(axis=-1)
         # (m + x g)^T Q (m + x g) = level is a quadratic equation in x
-        curvature = self._value(block, gradient)
-        share = missing / (square + namespace(m).sqrt(square * square + missing * curvature))
-        return m + share[..., None] * gradient
+        share, curvature = missing / square, self._value(block, gradient) / square
+        return m + (share / (1 + namespace(m).sqrt(1 + share * curvature)))[..., None] * gradient
 
 
 def quadric_orbits(representation: Representation, dimension: int | IntegerArray, points: Array) -> Quadrics | None:
@@ -246,9 +245,14 @@ def tight_inverse(action: Action, points: Array, rank: int) -> TightInverse | No
 
 
 def _holds(action: Action, inverse: TightInverse, points: Array) -> bool:
-    """Whether A G^-1 A^T K A = lambda A at points (L, N), to round-off."""
+    """Whether A G^-1 A^T K A = lambda A with lambda other than 0 at points (L, N), to round-off."""
+    points = points / np.abs(points).max(axis=-1, keepdims=True)  # the condition is that of all multiples of a point
     columns = action.infinitesimal.right(points)
-    scale = ((points @ inverse.trace) * points).sum(axis=-1)[:, None, None]
-    twice = columns @ inverse.gram_inverse @ np.swapaxes(columns, 1, 2) @ inverse.form @ columns
-    defect = np.abs(twice - scale * columns).max(axis=(1, 2), initial=0.0)
-    return bool((defect <= TIGHT_RTOL * np.abs(scale[:, 0, 0]) * np.abs(columns).max(axis=(1, 2), initial=0.0)).all())
+    scale = np.abs(over := ((points @ inverse.trace) * points).sum(axis=-1))
+    square = columns @ inverse.gram_inverse @ np.swapaxes(columns, 1, 2)
+    # lambda is at most |K| |A G^-1 A^T|, and 0 for a form that vanishes on the tangent space
+    least = GRADIENT_RTOL * np.linalg.norm(inverse.form, 2) * np.linalg.norm(square, axis=(1, 2))
+    defect = np.abs(square @ inverse.form @ columns - over[:, None, None] * columns).max(axis=(1, 2), initial=0.0)
+    return bool(
+        ((scale > least) & (defect <= TIGHT_RTOL * scale * np.abs(columns).max(axis=(1, 2), initial=0.0))).all()
+    )

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from difflib import get_close_matches
 from typing import Any, TypedDict
 
 import numpy as np
 import numpy.typing as npt
 
-from liehom.base.errors import InputError, ShapeError, displayed
+from liehom.base.errors import InputError, LiehomError, ShapeError, displayed
+from liehom.base.objects import refuse_masked
 from liehom.base.pytrees import Leaf, PerTrajectory, leaves, mapped, unwrapped
 from liehom.base.typing import Array, IntegerArray, Pytree, Values
 from liehom.flow.action.field import GeneratorField, check_point
@@ -126,6 +128,7 @@ def check_generator(field: GeneratorField, start: Array, t: np.floating[Any]) ->
 
 def step_sizes(dt: npt.ArrayLike, start: Values, span: Span) -> Array:
     """Fixed step sizes of shape (...,), checked."""
+    refuse_masked("dt", dt)
     kind = start.dtype
     try:
         sizes = np.asarray(dt).astype(kind, casting="same_kind")
@@ -142,6 +145,18 @@ def step_sizes(dt: npt.ArrayLike, start: Values, span: Span) -> Array:
         raise ShapeError(f"dt has shape {sizes.shape}, the ensemble {start.shape[:-1]}") from None
 
 
+@contextmanager
+def shapes_named(args: Pytree) -> Iterator[None]:
+    """A context in which a ValueError of psi, such as one of numpy about shapes, names the shapes of its args."""
+    try:
+        yield
+    except ValueError as error:
+        if args is None or isinstance(error, LiehomError):
+            raise
+        shapes = ", ".join(f"{leaf.path} has shape {np.shape(leaf.value)}" for leaf in leaves(unwrapped(args)))
+        raise ShapeError(f"psi fails with these args ({error}): {shapes}") from error
+
+
 OF_SOLVE_IVP = {  # options of scipy's solve_ivp, and what there is in their place
     "method": "the method is step, such as step='rk45' or step=liehom.LieTaylor(6)",
     "vectorized": "psi is called on whole ensembles always: m of shape (..., N), t of shape (...,)",
@@ -150,12 +165,15 @@ OF_SOLVE_IVP = {  # options of scipy's solve_ivp, and what there is in their pla
     "lband": "derivatives of psi are computed, by series or by tracing it",
     "uband": "derivatives of psi are computed, by series or by tracing it",
 }
+OF_PROPAGATOR = ("step", "exponential", "clock", "engine")  # what a propagator has, and its calls do not take
 OPTIONS = tuple({**EnsembleOptions.__annotations__, **FileOptions.__annotations__})
 
 
 def check_option_names(unknown: Iterable[str]) -> None:
-    """Raise TypeError if there is an option that `integrate` does not have, with the one that was meant."""
+    """Raise TypeError if there is an option that a call does not have, with the one that was meant."""
     for name in unknown:
+        if name in OF_PROPAGATOR:
+            raise TypeError(f"{name} is given once, as in Propagator(field, {name}=...), and not to a call")
         near = get_close_matches(name, OPTIONS, n=1)
         hint = OF_SOLVE_IVP.get(name) or (f"did you mean {near[0]!r}?" if near else f"known: {', '.join(OPTIONS)}")
         raise TypeError(f"integrate has no option {name!r}: {hint}")
@@ -163,6 +181,7 @@ def check_option_names(unknown: Iterable[str]) -> None:
 
 def least_atol(atol: npt.ArrayLike, size: int) -> float:
     """The absolute tolerance as one number: the least, if there is one for each of the N coordinates."""
+    refuse_masked("atol", atol)
     if np.ndim(atol) == 0:
         return positive("atol", atol, zero=True)  # type: ignore[arg-type]
     try:
@@ -206,6 +225,7 @@ def number_of_looks(looks: int | None) -> int | None:
 
 def times_of(t_eval: npt.ArrayLike, span: Span) -> Array:
     """Times of t_eval, shape (k,), checked."""
+    refuse_masked("t_eval", t_eval)
     try:
         times: Any = np.asarray(t_eval, dtype=span[0].dtype)
     except (TypeError, ValueError):

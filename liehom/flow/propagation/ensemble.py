@@ -24,7 +24,7 @@ from liehom.flow.propagation.integration import integrate
 from liehom.flow.propagation.propagator import ATOL, RTOL, default_step, without_order_warning
 from liehom.flow.run.options import LOST, TRAJECTORY_MARK, Progress, Span, also_lost, among, overall_status, points_of
 from liehom.flow.run.records import ConservationReport, Report
-from liehom.flow.run.solution import Solution, as_arrays, from_arrays, stable_repr, warn_of_order
+from liehom.flow.run.solution import Solution, as_arrays, from_arrays, stable_repr, warn_of_failure
 from liehom.flow.steps.step import as_step
 
 # Solutions of the parts of an ensemble merged into one.
@@ -389,7 +389,7 @@ def integrate_ensemble(
         shown.update(lambda: 1.0, last=True)
     sampled = options.get("t_eval") is not None
     solution = merged([part.solution for part in sorted(parts, key=lambda part: part.first)], sampled=sampled)
-    warn_of_order(solution.report, stacklevel=2)
+    warn_of_failure(solution, stacklevel=2)
     return solution
 
 

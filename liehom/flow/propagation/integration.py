@@ -38,7 +38,8 @@ def integrate(
         Initial and final time; the final time may be the smaller one.
     y0 : array_like of shape (N,) or (..., N)
         The initial point, or the initial points of an ensemble, which is integrated at once. Integers are floats;
-        numpy.longdouble gives a solution in extended precision. Other types are refused rather than rounded.
+        numpy.longdouble gives a solution in extended precision. Other types are refused rather than rounded, and so are
+        points other than 0 whose largest coordinate is below 7e-139 or above 3e138.
     step : Step or str, optional
         The method, or a name of `liehom.methods.step_names`. By default `Taylor` of an order that follows from the
         tolerances (``Taylor(8)`` for the default ones), and ``LieTaylor(6)`` for fixed step sizes.
@@ -107,6 +108,8 @@ def integrate(
 
     Warns
     -----
+    RuntimeWarning
+        If a trajectory ends with status -1, with the message of the solution.
     OrderWarning
         If a `Corrected` step does not keep its order, that is, if a linear system of its corrections has no solution
         or a step comes within two steps of the cone on which the range condition fails (docs/theory/correctors.md).

@@ -31,6 +31,7 @@ from liehom.flow.engines.arguments import (
     least_atol,
     number_of_looks,
     positive,
+    shapes_named,
     step_sizes,
     times_of,
     traces_times,
@@ -46,7 +47,7 @@ from liehom.flow.methods.stability import warn_of_stiffness
 from liehom.flow.methods.taylor import Taylor
 from liehom.flow.run.events import EventFunction
 from liehom.flow.run.options import Options, Span, points_of, span_of
-from liehom.flow.run.solution import Solution, checked_path, warn_of_order
+from liehom.flow.run.solution import Solution, checked_path, warn_of_failure
 from liehom.flow.series.arrays import is_jax
 from liehom.flow.steps.conserving import ConservingStep
 from liehom.flow.steps.corrected import CorrectedStep
@@ -104,7 +105,8 @@ class BoundCall:
             bound = known.field.with_args(args)
         else:
             args = known.args
-        return self._solve(replace(known, span=span, options=options, bound=bound, args=args))
+        with shapes_named(args):
+            return self._solve(replace(known, span=span, options=options, bound=bound, args=args))
 
 
 # Inspection: what a step can do at given points, without a step being made.
@@ -181,7 +183,7 @@ def inspected(problem: Problem) -> Inspection:
 
 DEFAULT_ORDER = 6  # order of the default step with fixed step sizes
 RTOL, ATOL = 1e-6, 1e-9  # default tolerances
-WARNS: ContextVar[bool] = ContextVar("WARNS", default=True)  # whether an `OrderWarning` is issued
+WARNS: ContextVar[bool] = ContextVar("WARNS", default=True)  # whether failures are reported by warnings
 
 
 @final
@@ -438,7 +440,8 @@ class Propagator:
         span = jax_span(t_span) if timed else span_of(t_span, np.dtype(np.float64) if on_jax else start.dtype)
         bound = self.field if args is None else self.field.with_args(args)
         if not on_jax:
-            check_generator(bound, np.asarray(start), span[0])
+            with shapes_named(args):
+                check_generator(bound, np.asarray(start), span[0])
         return start, orbit_dimension, span, action, bound, args
 
     def __repr__(self) -> str:
@@ -483,9 +486,9 @@ def without_order_warning() -> Iterator[None]:
 
 
 def warned(solution: Solution, problem: Problem | None = None, *, stacklevel: int) -> Solution:
-    """The solution, after an `OrderWarning` if it did not keep its order, and a `StiffnessWarning` if it was slow."""
+    """The solution, after a warning if `success` is False, and a `StiffnessWarning` if it was slow."""
     if WARNS.get():
-        warn_of_order(solution.report, stacklevel)
+        warn_of_failure(solution, stacklevel)
         if (p := problem) is not None and p.options.dt is None and type(solution.y) is np.ndarray:
             warn_of_stiffness(p.action, p.bound, p.step, p.orbit_dimension, p.span, solution, stacklevel)
     return solution

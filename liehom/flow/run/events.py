@@ -18,7 +18,7 @@ import numpy as np
 
 from liehom.base.errors import InputError, displayed
 from liehom.base.typing import Array, BooleanArray, Pytree
-from liehom.flow.action.components import called_as_event
+from liehom.flow.action.components import called_as_event, guarded
 from liehom.flow.run.records import EventLog
 
 ITERATIONS = 200
@@ -72,7 +72,7 @@ class Events:
 
     def value(self, i: int, t: Array, y: Array) -> Array:
         """g_i(t, y), shape (...,)."""
-        answer = self.functions[i](t if np.ndim(t) else np.asarray(t)[()], y)
+        answer = guarded(self.functions[i], f"events[{i}]", t if np.ndim(t) else np.asarray(t)[()], y)
         try:
             value = np.asarray(answer)
             value = value if value.dtype.kind == "f" else value.astype(np.float64, casting="same_kind")

@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from liehom.base.budget import in_time
 from liehom.base.errors import InputError, displayed
+from liehom.base.objects import refuse_masked
 from liehom.base.typing import Array, BooleanArray, IntegerArray
 from liehom.flow.run.check import LOOKS
 from liehom.flow.run.events import EventFunction
@@ -161,6 +162,7 @@ ROUNDED = ("mpf", "mpc", "mpfr", "Decimal", "Float", "arb")
 
 def points_of(y0: npt.ArrayLike) -> Array:
     """Initial points as an array of float64 (exact numbers too), or of longdouble if they are given in it."""
+    refuse_masked("the start", y0)
     try:
         array = np.asarray(y0)
         if array.dtype.kind == "O":

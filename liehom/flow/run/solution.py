@@ -372,8 +372,11 @@ def interpolant(solution: Solution) -> DenseSolution | None:
     return solution.sol
 
 
-def warn_of_order(report: Report, stacklevel: int) -> None:
-    """Issue an `OrderWarning` if a corrected step did not keep its order, with the remedies."""
+def warn_of_failure(solution: Solution, stacklevel: int) -> None:
+    """Issue a RuntimeWarning if a trajectory failed, and an `OrderWarning` with remedies if an order was not kept."""
+    if solution.status == -1:
+        warnings.warn(f"status -1: {solution.message}", RuntimeWarning, stacklevel=stacklevel + 1)
+    report = solution.report
     if report.unkept_from is None:
         return
     text = (

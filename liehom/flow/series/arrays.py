@@ -17,6 +17,7 @@ import numpy.typing as npt
 from numpy.typing import ArrayLike
 
 from liehom.base.errors import FieldError, SeriesError, SingularError
+from liehom.base.objects import refuse_masked
 from liehom.base.typing import Number, ObjectArray, Values
 from liehom.flow.tracing.array import Traced
 from liehom.flow.tracing.lattice import LatticeTraced
@@ -70,6 +71,8 @@ def as_values(x: NumbersLike) -> npt.NDArray[Any]:
     """x as an array with the arithmetic of a field: machine integers become floats, exact integers fractions."""
     if is_lazy(x):
         return x if x.dtype.kind not in "iub" else x.astype(float)
+    if type(x) is not np.ndarray:
+        refuse_masked("a point", x)
     array = np.asarray(x)
     if array.dtype.kind in "fc":
         return array

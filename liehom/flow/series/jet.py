@@ -32,9 +32,7 @@ Operand: TypeAlias = Any
 """A Jet, an array, a number, or a nested list or array of objects that holds Jets."""
 
 
-WITHOUT_SERIES = (
-    "a Runge-Kutta step such as liehom.RKMK('rk45') calls the generator on points only, and runs it as it is"
-)
+WITHOUT_SERIES = "or take step='rk45', a Runge-Kutta step, which calls the generator on points only, as it is"
 """Remedy of messages about generators that cannot be expanded."""
 
 

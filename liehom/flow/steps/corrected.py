@@ -222,7 +222,7 @@ class OrderRecursion:
             fraction = isotropy_fraction(self.action, self.flow, l, self.total) if self.flow.time_dependent else None
             if fraction is not None and not is_lazy(fraction) and bool(np.all(fraction == 1)):
                 fraction = None
-            drifts = l == 1 and self.total > 1 and type(solver) is RangeSolver and not is_jax(self.m)
+            drifts = l == 1 and self.total > 1 and type(solver) is RangeSolver
             drift = self.action.infinitesimal(self.flow.psi(1), self.m) if drifts else None
             parts.append(Part(l, here, solver, fraction, drift))
         return parts

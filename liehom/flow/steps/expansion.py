@@ -283,21 +283,20 @@ def at_rest(action: Action, flow: Flow) -> Values:
     """Whether w_1 of an autonomous field is zero up to round-off, shape (...,), by norms only; cf. `vanishing`."""
     w, m = flow.point(1), flow.point(0)
     bound = (ROUND_OFF_UNITS * float(np.finfo(w.dtype).eps) * action.max_norm) ** 2
-    speed, size = _square(w), _square(m)
+    size = _square(m)
+    rate = _square(w) / np.where(size > 0, size, 1.0)  # fourth powers of coordinates could overflow
     gram, twice = action.inner_product.matrix, flow.generator.order >= 1
     if isinstance(w, np.ndarray):  # in most calls no point is at rest, even by a larger norm
         largest = float(np.abs(gram).sum(axis=0).max()) * bound
-        far = speed > largest * _square(flow.psi(0)) * size
-        if bool(far.all()) and (
-            not twice or bool((speed * speed > largest * _square(flow.psi(1)) * (size * size)).all())
-        ):
+        far = rate > largest * _square(flow.psi(0))
+        if bool(far.all()) and (not twice or bool((rate * rate > largest * _square(flow.psi(1))).all())):
             return ~far
     root = np.linalg.cholesky(gram)
 
-    still = speed <= bound * _square(across_lanes(flow.psi(0), root)) * size
+    still = rate <= bound * _square(across_lanes(flow.psi(0), root))
     if not twice:
         return still
-    return still | (speed * speed <= bound * _square(across_lanes(flow.psi(1), root)) * size * size)
+    return still | (rate * rate <= bound * _square(across_lanes(flow.psi(1), root)))
 
 
 def _square(x: Values) -> Values:

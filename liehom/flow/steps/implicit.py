@@ -190,12 +190,15 @@ def _least_squares(columns: list[list[Array]], size: Array) -> tuple[list[Array]
 # pseudo-transient x' = F(A x) - x, x(0) = 0. Newton's step leads there unless F expands along it. Where it points
 # against F - x, the step is that of backward Euler for the pseudo-transient, (1/d + 1 - F') step = F - x, with a size d
 # that grows as the residual falls (C. T. Kelley, D. E. Keyes, Convergence analysis of pseudo-transient continuation,
-# 1998).
+# 1998). If F' has a real eigenvalue above 1 at a solution, it may be on another branch than that from h = 0. The
+# solutions of x = s F(A x) are then followed from s = 0 to 1, and the last one is that of the step.
 
 MAX_NEWTON_ITERATIONS = 60
 HASTY_ITERATIONS = 20  # iterations of a step that is cheaper to repeat with half its size
 MAX_DENSE = 48  # largest number of unknowns of one trajectory for elimination
 REFRESH = 0.03  # the derivative is evaluated again if the residual is multiplied by more than this
+FIRST_PART, MAX_PARTS = 1e-8, 400  # the first part of h on the way from 0, and the largest number of parts
+NEAR = 0.1  # a part in which x moves by more than this fraction of the reach is made in smaller parts
 MAX_GROWTH = 10.0  # a step that multiplies the residual by more than this is rejected
 GUIDED = 0.1  # steps above this fraction of the reach are compared with the direction of the pseudo-transient
 CRAWLS = 1e-3
@@ -206,17 +209,43 @@ def newton(
     equation: Equation, start: Array, wanted: BooleanArray, reach: float, *, joint: bool = False, hasty: bool = False
 ) -> tuple[Array, BooleanArray, Array]:
     """The x, which of them are solutions to round-off, and the last changes, for the trajectories `wanted`."""
-    x, solved, change = _newton_iterated(equation, start, wanted, reach, joint, guided=True, hasty=hasty)
+    x, solved, change, repels = _newton_iterated(equation, start, wanted, reach, joint, guided=True, hasty=hasty)
     if not hasty and bool((wanted & ~solved).any()):
-        again, more, last = _newton_iterated(equation, start, wanted & ~solved, reach, joint, guided=False)
-        x, solved = np.where(more, again, x), solved | more
+        again, more, last, others = _newton_iterated(equation, start, wanted & ~solved, reach, joint, guided=False)
+        x, solved, repels = np.where(more, again, x), solved | more, np.where(more, others, repels)
         change = np.where(more, 0.0, last)
+    if bool((astray := wanted & solved & repels).any()):
+        followed, more = (x, ~wanted) if hasty else _followed(equation, x, astray, reach, joint)
+        x, solved = np.where(more, followed, x), (solved & ~astray) | more
     return x, solved, change
+
+
+def _followed(
+    equation: Equation, like: Array, wanted: BooleanArray, reach: float, joint: bool
+) -> tuple[Array, BooleanArray]:
+    """The ends of the branches x = s F(A x), s from 0 to 1, from x = 0, and for which trajectories they are reached."""
+    axes = tuple(range(like.ndim)) if joint else (0, -1)
+    x, left = np.zeros_like(like), wanted
+    s, size = np.zeros(wanted.shape), np.full(wanted.shape, FIRST_PART)
+    for _ in range(MAX_PARTS):
+        ahead: Any = np.minimum(s + size, 1.0)
+        part = Equation(lambda y, by=ahead[0]: [k * by for k in equation.function(y)], equation.rows)  # type: ignore[misc]
+        trial, solved, *_ = _newton_iterated(part, x, left, reach, joint, guided=False)
+        near = left & solved & (_norm(trial - x, axes) <= NEAR * reach)
+        x, s, size = (
+            np.where(near, trial, x),
+            np.where(near, ahead, s),
+            np.where(near, np.minimum(2 * size, ahead / 4), size / 4),
+        )
+        left = left & (s < 1)
+        if not left.any():
+            break
+    return x, wanted & (s == 1)
 
 
 def _newton_iterated(
     equation: Equation, x: Array, wanted: BooleanArray, reach: float, joint: bool, *, guided: bool, hasty: bool = False
-) -> tuple[Array, BooleanArray, Array]:
+) -> tuple[Array, BooleanArray, Array, BooleanArray]:
     axes = tuple(range(x.ndim)) if joint else (0, -1)
     system = _System(equation, x, axes, wanted)
     eps = float(np.finfo(x.dtype).eps)
@@ -258,7 +287,7 @@ def _newton_iterated(
         solved, active = solved | done, active & ~done
         if not active.any():
             break
-    return x, solved, change
+    return x, solved, change, system.repels()
 
 
 class _System:
@@ -290,6 +319,14 @@ class _System:
     def _along(self, v: Array) -> Array:
         moved: Any = self.equation.along(self.at, v)
         return moved
+
+    def repels(self) -> BooleanArray:
+        """Whether F' has a real eigenvalue above 1, bool (1, ..., 1); False for large systems (not computed)."""
+        if not self.dense:
+            return np.zeros(np.shape(self._size), dtype=bool)
+        jacobian = np.where(np.isfinite(self.jacobian), self.jacobian, 0.0).astype(np.float64, copy=False)
+        values: Any = np.linalg.eigvals(jacobian)
+        return ((values.imag == 0) & (values.real > 1)).any(axis=-1).reshape(np.shape(self._size))
 
     def size(self) -> Array:
         """A norm of F', at least 1, shape (1, ..., 1)."""
@@ -336,6 +373,7 @@ Tracer: TypeAlias = Any  # a traced array, or a JAX array
 FIXED_POINT_ITERATIONS = 200
 NEWTON_ITERATIONS = 30
 JAX_ITERATIONS = 60
+ALONG = 1e-6  # longer steps, in units of the reach, must go along the pseudo-transient: arrays compare eigenvalues
 MAX_TRACED = 12
 """Largest number of unknowns for which the elimination is traced; larger systems iterate the fixed point only."""
 EPS = float(np.finfo(np.float64).eps)
@@ -377,7 +415,7 @@ def _newton_on_tape(
         residual = equation.value(x) - x
         step: Tracer = np.linalg.solve(np.eye(count) - _whole(equation, x), residual.reshape(count)).reshape(shape)
         length = np.sqrt((step * step).sum())
-        along = ((step * residual).sum() > 0) | (length <= 0.1 * reach)
+        along = ((step * residual).sum() > 0) | (length <= ALONG * reach)
         limited = length > reach
         step = step * np.where(limited, reach / np.where(limited, length, 1.0), 1.0)
         trial = x + step
@@ -425,7 +463,7 @@ def solved_by_jax(equation: Equation, start: Tracer, reach: float) -> Tracer:
         k, x, _ = state
         step = newton(x)
         length = jnp.sqrt(jnp.sum(step * step, axis=(0, -1), keepdims=True))
-        along = (jnp.sum(step * (equation.value(x) - x), axis=(0, -1), keepdims=True) > 0) | (length <= 0.1 * reach)
+        along = (jnp.sum(step * (equation.value(x) - x), axis=(0, -1), keepdims=True) > 0) | (length <= ALONG * reach)
         step = step * jnp.where(length > reach, reach / jnp.where(length > reach, length, 1.0), 1.0)
         step = jnp.where(along, step, jnp.nan)  # it would lead to another solution, far away
         return k + 1, x + step, jnp.all(_is_small(step, x) | ~jnp.isfinite(step))

@@ -24,7 +24,7 @@ from liehom.base.errors import InternalError
 from liehom.base.typing import BooleanArray, IntegerArray, Values
 from liehom.flow.action.frames import orthogonal_decomposition
 from liehom.flow.action.space import Action, IsotropyFrame
-from liehom.flow.series.arrays import across_lanes, namespace
+from liehom.flow.series.arrays import across_lanes, is_lazy, namespace
 from liehom.flow.tracing.array import Traced
 from liehom.flow.tracing.loop import while_loop
 
@@ -148,8 +148,12 @@ class RangeSolver:
         """
         reach = (2 / _allowed(self._moves.shape[-2])) ** 2 * (1 + (self._factor * operator_bound(self._action)) ** 2)
         square, size = inner(change, change), self._size[..., 0] ** 2
-        if type(change) is Traced:
-            return self._tested_on_tape(change, square * (reach * self._inverse_square()) > size)
+        if is_lazy(change):
+            suspicious = square * (reach * self._inverse_square()) > size
+            if type(change) is Traced:
+                return self._tested_on_tape(change, suspicious)
+            v = change / self._size
+            return suspicious & self._ratio_is_small(v, self._down, self._moves, self._unit, self._basis)
         along = inner(change, self._direction)
         moved = np.maximum(square - along * along, 0.0) / size
         suspicious = ~(moved * reach < self.singular_value**2)
@@ -297,8 +301,8 @@ class TightFrameSolver:
 
 
 def inner(a: Values, b: Values) -> Values:
-    """Inner products of a and b (..., N), shape (...,), of numpy or traced arrays."""
-    return np.sum(a * b, axis=-1) if type(a) is Traced else np.einsum("...i,...i->...", a, b)
+    """Inner products of a and b (..., N), shape (...,)."""
+    return np.sum(a * b, axis=-1) if type(a) is Traced else namespace(a, b).einsum("...i,...i->...", a, b)
 
 
 def _allowed(d: int) -> float:
@@ -324,7 +328,7 @@ def _determinant(matrix: Values) -> Values:
     """Determinants of matrices (..., d, d); of tracers by elimination without pivots, which is exact up to round-off
     where no leading minor vanishes."""
     if type(matrix) is not Traced:
-        return np.linalg.det(_single(matrix))
+        return namespace(matrix).linalg.det(_single(matrix))
     rows = [[matrix[..., i, j] for j in range(matrix.shape[-1])] for i in range(matrix.shape[-1])]
     product = rows[0][0]
     for k in range(1, len(rows)):

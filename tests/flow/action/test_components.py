@@ -14,6 +14,8 @@ from hypothesis import given, strategies as st
 import liehom as lh
 from liehom.base.errors import FieldError, InputError, ParseError, SeriesError, ShapeError
 from liehom.flow.action.components import Components, takes_time
+from liehom.flow.tracing.array import Traced
+from liehom.flow.tracing.graph import Tape
 
 M0, M1, M2, T = sympy.symbols("m0 m1 m2 t")
 POINT = np.array([0.3, -0.7, 1.1])
@@ -391,3 +393,113 @@ def test_check_of_the_point() -> None:
     for bad in (np.zeros(2), np.zeros((3, 4)), np.float64(1.0)):
         with pytest.raises(ShapeError, match="3 coordinates"):
             components(plain).check(bad)
+
+
+# -- functions that write into their arguments ----------------------------------------------------------------
+def doubled_in_place(m: Any) -> Any:
+    m *= 2
+    return -m
+
+
+def written_by_a_part(m: Any) -> Any:
+    first = m[..., 0]
+    first += 1
+    return -m
+
+
+def written_by_numpy(m: Any) -> Any:
+    return -np.multiply(m, 2, out=m)
+
+
+def set_entry(m: Any) -> Any:
+    m[..., 0] = 1.0
+    return -m
+
+
+def later(m: Any, t: Any) -> Any:
+    t += 1
+    return -m
+
+
+def when_moved(m: Any) -> Any:
+    if np.all(m[..., 0] < 0.599):
+        m *= 2
+    return -m * [1.0, 0.5, 0.25]
+
+
+WRITERS = [doubled_in_place, written_by_a_part, written_by_numpy, set_entry, later]
+
+
+@pytest.mark.parametrize("engine", ["numpy", "llvm", "jax"])
+@pytest.mark.parametrize("psi", WRITERS)
+@pytest.mark.parametrize("y0", [[0.6, 0.0, 0.8], [[0.6, 0.0, 0.8], [0.0, 0.0, 1.0]]], ids=["one", "ensemble"])
+def test_psi_cannot_write_into_the_points_of_a_run(psi: Any, engine: str, y0: Any) -> None:
+    field = lh.GeneratorField(lh.adjoint(lh.so(3)), psi)
+    start = np.array(y0)
+    if psi is later and start.ndim == 1:
+        return  # the time of one trajectory is a number, and t += 1 another one
+    with pytest.raises(InputError, match=r"psi writes into its argument .*write into a copy, as after m = m\.copy\(\)"):
+        lh.integrate(field, (0, 1), start, step="rk4", dt=0.1, engine=engine)
+    assert start.tolist() == y0
+
+
+def test_psi_that_writes_later_in_a_run_is_noticed_there() -> None:
+    field = lh.GeneratorField(lh.adjoint(lh.so(3)), when_moved)
+    with pytest.raises(InputError, match="writes into its argument"):
+        lh.integrate(field, (0, 5), [0.6, 0.48, 0.64], step="rk4", dt=0.1)
+
+
+@pytest.mark.parametrize("psi", WRITERS[:4])
+def test_psi_cannot_write_into_tracers_series_and_arrays_of_jax(psi: Any) -> None:
+    tape = Tape()
+    points = Traced.inputs(tape, 0, 3)
+    before = list(points.entries)
+    with pytest.raises(InputError, match="writes into its argument"):
+        components(psi)(points)
+    assert all(a is b for a, b in zip(points.entries, before, strict=True))
+    series = lh.Jet.variable(POINT, 2)
+    try:  # a series either refuses, or x += 1 makes another one
+        components(psi)(series)
+    except SeriesError as error:
+        assert "copy" in str(error)
+    assert series.coefficient(0).tolist() == POINT.tolist()
+
+
+def test_hamiltonians_and_events_cannot_write_either() -> None:
+    def energy(m: Any) -> Any:
+        m *= 2
+        return (m * m).sum(axis=-1)
+
+    with pytest.raises(InputError, match="H writes into its argument"):
+        lh.hamiltonian_field(lh.so(3), energy)
+
+    def height(t: Any, y: Any) -> Any:
+        y[..., 2] = 0.0
+        return y[..., 2]
+
+    field = lh.GeneratorField(lh.adjoint(lh.so(3)), [1, 0, 0])
+    for engine in ("numpy", "llvm"):
+        with pytest.raises(InputError, match=r"events\[0\] writes into its argument"):
+            lh.integrate(field, (0, 1), [0.6, 0.0, 0.8], events=height, engine=engine)
+
+
+def test_a_copy_may_be_written_into_and_values_are_free() -> None:
+    def psi(m: Any) -> Any:
+        m = m.copy()
+        m[..., 0] = 0.0
+        return m
+
+    result = components(psi)(POINT)
+    assert result.tolist() == [0.0, -0.7, 1.1] and POINT[0] == 0.3
+
+
+def test_psi_without_a_series_is_told_which_step_takes_it() -> None:
+    def spline(t: Any) -> Any:
+        return np.asarray([t, 1.0], dtype=float)[0] if isinstance(t, lh.Jet) else np.interp(t, [0.0, 1.0], [0.0, 1.0])
+
+    rho = lh.adjoint(lh.so(3))
+    for psi in (lambda m: np.where(m > 0, m, 0.0), lambda m, t: spline(t) * m):
+        field = lh.GeneratorField(rho, psi)
+        with pytest.raises(SeriesError, match="take step='rk45', a Runge-Kutta step"):
+            lh.integrate(field, (0, 1), [0.6, 0.0, 0.8])
+        assert lh.integrate(field, (0, 1), [0.6, 0.0, 0.8], step="rk45").success

@@ -38,3 +38,13 @@ def test_one_orbit_that_is_not_tight_is_enough_to_refuse() -> None:
     points = np.array([[1.0, 0, 0, 1, 0, 2], [1.0, 0, 0, 2, 0, 3]])
     assert tight_inverse(action, points[:1], 2) is not None
     assert tight_inverse(action, points, 2) is None
+
+
+@pytest.mark.parametrize("scale", [1e-100, 1.0, 1e100])
+def test_a_form_that_vanishes_on_the_tangent_space_gives_none(scale: float) -> None:
+    """Two vectors of R^2 under one nilpotent matrix: every invariant form is 0 on the orbits, which are lines."""
+    rho = lh.Representation.from_matrices([np.kron(np.eye(2, dtype=int), [[0, 1], [0, 0]])])
+    points = scale * np.array([[1.0, 2.0, 3.0, 4.0]])
+    assert tight_inverse(lh.Action(rho), points, 1) is None
+    sphere = lh.Action(lh.defining(lh.so(3)))
+    assert tight_inverse(sphere, scale * np.array([[0.6, 0.0, 0.8]]), 2) is not None

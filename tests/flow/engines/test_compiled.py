@@ -143,6 +143,7 @@ def test_equilibria_rest_and_are_counted() -> None:
     assert made.report.equilibria == plain.report.equilibria > 0
 
 
+@pytest.mark.filterwarnings("ignore:status -1")
 def test_large_steps_and_failures_are_those_of_numpy() -> None:
     steep = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m: 40.0 * m * [1.0, 0.5, 0.25])
     assert_same(*both(steep, (0, 0.8), sphere(5), step=lh.RKMK("rk4"), dt=0.2), ulps=3 * 10**4)
@@ -152,6 +153,7 @@ def test_large_steps_and_failures_are_those_of_numpy() -> None:
     assert made.message == plain.message
 
 
+@pytest.mark.filterwarnings("ignore:status -1")
 def test_max_steps_ends_a_run_as_without() -> None:
     plain, made = both(BODY, (0, 10), START, step=lh.Euler(), dt=0.1, max_steps=37)
     assert (made.status, made.message, int(made.n_steps)) == (-1, plain.message, 37)

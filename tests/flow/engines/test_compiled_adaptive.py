@@ -183,6 +183,7 @@ def test_tolerances_spans_and_bounds_share_machine_code(cache: Path) -> None:
     assert len(list(cache.iterdir())) == before + 1
 
 
+@pytest.mark.filterwarnings("ignore:status -1")
 def test_max_steps_ends_a_run_as_without() -> None:
     plain, made = both(BODY, (0, 50), START, step=STEPS["RK45"], max_steps=37)
     assert (made.status, made.message, int(made.n_steps)) == (-1, plain.message, 37)
@@ -192,6 +193,7 @@ def test_max_steps_ends_a_run_as_without() -> None:
     assert sorted(set(made.statuses.tolist())) == [-1, 0] and made.n_steps.max() == 40
 
 
+@pytest.mark.filterwarnings("ignore:status -1")
 @pytest.mark.parametrize("step", ["RK45", "Taylor 4"])
 def test_a_psi_that_ends_ends_a_trajectory_as_without(step: str) -> None:
     ends = lh.GeneratorField(lh.adjoint(lh.so(3)), ["sqrt(9/10 - t)", "m0", "1"])
@@ -237,6 +239,7 @@ def test_an_interrupted_run_goes_on_bit_for_bit(
     assert str(again.report) == str(whole.report) and not file.exists()
 
 
+@pytest.mark.filterwarnings("ignore:status -1")
 def test_a_least_step_size_does_not_lengthen_steps() -> None:
     starts = sphere(5) * SPEEDS[::4]
     for options in ({"min_step": 0.5, "max_steps": 200}, {"min_step": 0.01, "t_eval": [1.0, 3.0]}):

@@ -167,6 +167,7 @@ def test_an_interrupted_run_goes_on_with_its_events(tmp_path: Path, monkeypatch:
         np.testing.assert_array_equal(x, y)
 
 
+@pytest.mark.filterwarnings("ignore:status -1")
 @pytest.mark.parametrize("count", [0, 1, 3])
 def test_ensembles_of_any_size_and_runs_that_fail_have_events(count: int) -> None:
     options: dict[str, Any] = {"step": lh.LieTaylor(4), "dt": 0.3, "events": FIRST, "max_steps": 15}

@@ -54,6 +54,7 @@ def test_functions_agree(psi: Any) -> None:
     assert_same(*both(field(psi), (0, 1), sphere(5), step=lh.RKMK("heun"), dt=0.11))
 
 
+@pytest.mark.filterwarnings("ignore:status -1")
 @pytest.mark.parametrize("part", [
     lambda x, y: np.maximum(np.log(x), -1.0), lambda x, y: np.maximum(np.log(x), y),
     lambda x, y: np.minimum(y, np.log(x)), lambda x, y: np.clip(np.log(x), -1, 1),
@@ -69,6 +70,7 @@ def test_what_is_not_a_number_is_not_lost(part: Any) -> None:
     assert_same(plain, made, ulps=10**4)
 
 
+@pytest.mark.filterwarnings("ignore:status -1")
 @pytest.mark.filterwarnings("ignore:invalid value")
 def test_an_implicit_step_ends_only_the_trajectory_whose_psi_ends() -> None:
     ending = lh.GeneratorField(SO3, lambda m: np.sqrt(m[..., :1] + 0.5) * [0.3, 0, 0] + [0, 1, 0.3])

@@ -57,6 +57,7 @@ def test_lanes_iterate_as_long_as_they_need() -> None:
     assert_same(*both(field, (0, 1), y0, step=lh.RKMK("gauss2"), dt=0.01))
 
 
+@pytest.mark.filterwarnings("ignore:status -1")
 @pytest.mark.parametrize("backend", ["llvm", "jax"])
 def test_an_iteration_that_fails_ends_as_on_arrays(backend: str) -> None:
     # across a jump of psi that points back, the equation of the midpoint rule has no solution

@@ -162,6 +162,7 @@ def test_an_unknown_number_of_steps_needs_a_bound() -> None:
 SMALLEST = pytest.param({"min_step": 2.0}, marks=pytest.mark.slow)
 
 
+@pytest.mark.filterwarnings("ignore:status -1")
 @pytest.mark.parametrize("options", [{"max_steps": 3}, SMALLEST], ids=str)
 def test_bounds_of_adaptive_steps_hold_under_jit(options: dict[str, Any]) -> None:
     field = lh.GeneratorField(RHO, lambda m, t, args: -m * args)

@@ -135,6 +135,7 @@ def test_margins_repeat_the_other_side() -> None:
             assert plane[at] == values[i % 3, j % 4]
 
 
+@pytest.mark.filterwarnings("ignore:status -1")
 def test_a_site_that_is_not_finite_ends_its_lattice_with_a_message() -> None:
     field = lh.GeneratorField(
         lh.adjoint(lh.so(3)),

@@ -83,6 +83,7 @@ def test_points_that_the_group_fixes_are_found_in_every_call(count: int) -> None
     assert sol.report == plain.report and engine.solved == 1  # numpy makes it
 
 
+@pytest.mark.filterwarnings("ignore:status -1")
 def test_a_trajectory_that_fails_is_made_from_the_beginning() -> None:
     field = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m: np.sqrt(m[..., :1] + 0.5) * [0.01, 0, 0] + [0, 0.5, 1.0])
     made, engine = propagator(field, lh.RKMK("rk4"))
@@ -92,6 +93,7 @@ def test_a_trajectory_that_fails_is_made_from_the_beginning() -> None:
     assert engine.solved == 2 and failed.status == plain.status == -1 and failed.message == plain.message
 
 
+@pytest.mark.filterwarnings("ignore:status -1")
 @pytest.mark.parametrize("change", [{"dt": 0.2}, {"t_eval": [1.0]}, {"max_steps": 3}, {"rtol": 1e-3}], ids=str)
 def test_another_call_is_made_from_the_beginning(change: dict[str, Any]) -> None:
     made, engine = propagator(step=lh.RKMK("rk4"))

@@ -53,6 +53,7 @@ def test_equal_micro_steps_are_one_segment() -> None:
     assert schedule((0.0, 1.0), 0.25, 4, None, keeps=True).repeats.tolist() == [1, 2, 3, 4]
 
 
+@pytest.mark.filterwarnings("ignore:status -1")
 @pytest.mark.parametrize("t_eval", [None, [0.5e-11, 3.0]])
 def test_a_run_that_is_cut_off_needs_no_more_memory_than_its_steps(t_eval: list[float] | None) -> None:
     field = lh.GeneratorField(lh.defining(lh.so(2)), [1])

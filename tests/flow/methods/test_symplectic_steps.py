@@ -173,6 +173,7 @@ def test_large_steps_of_the_isospectral_midpoint_are_solved_and_stay_on_the_sphe
     np.testing.assert_allclose(np.linalg.norm(sol.y, axis=0), 20 * np.linalg.norm(data.start), rtol=1e-12)
 
 
+@pytest.mark.filterwarnings("ignore:status -1")
 @pytest.mark.parametrize("step", [VARIATIONAL, MOSER], ids=str)
 def test_too_large_steps_end_a_run_with_a_message(step: lh.Step) -> None:
     data = system("body")

@@ -96,6 +96,7 @@ def test_psi_with_one_parameter_per_trajectory_is_refused() -> None:
         lh.integrate_ensemble(hidden, (0, 1), starts(), chunk=4)
 
 
+@pytest.mark.filterwarnings("ignore:status -1")
 def test_failures_are_told_of_the_whole() -> None:
     def blows(m: Any, t: Any) -> Any:
         return m / np.where(m[..., :1] > 0.9, 1 - t[..., None], 1.0)

@@ -94,6 +94,7 @@ def test_of_an_array_of_tolerances_the_least_counts() -> None:
             lh.integrate(FIELD, (0, 1), START, atol=atol, **options)
 
 
+@pytest.mark.filterwarnings("ignore:status -1")
 @pytest.mark.parametrize("engine", ["numpy", "llvm"])
 @pytest.mark.parametrize("step", ["rk45", "lietaylor4"])
 def test_min_step_ends_a_trajectory_that_needs_less(engine: str, step: str) -> None:

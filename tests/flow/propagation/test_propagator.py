@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import liehom as lh
-from liehom.base.errors import InputError, OrderWarning
+from liehom.base.errors import InputError, OrderWarning, ShapeError
 from liehom.flow.engines.engine import NumpyEngine, Problem
 
 FIELD = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m: -m * [1.0, 0.5, 0.25])
@@ -160,3 +160,56 @@ def test_an_inspection_finds_what_the_report_of_a_run_finds() -> None:
     plain = lh.Propagator(FIELD, "rk4").inspect([START, START])
     assert plain.order.tolist() == [4, 4] and np.isinf(plain.singular_value).all()
     assert str(plain) == "RKMK('rk4') at 2 points\norder 4"
+
+
+# -- what a call does not take ---------------------------------------------------------------------------------
+@pytest.mark.parametrize("name", ["step", "exponential", "clock", "engine"])
+def test_a_call_says_that_a_propagator_has_its_method_from_the_beginning(name: str) -> None:
+    propagator, options = lh.Propagator(FIELD), {name: "rk4"}
+    for call in (lambda: propagator((0, 1), START, **options), lambda: propagator.bind(START, **options)):
+        with pytest.raises(TypeError, match=rf"^{name} is given once, as in Propagator\(field, {name}=\.\.\.\)"):
+            call()
+    with pytest.raises(TypeError, match="did you mean 'step'"):
+        lh.integrate(FIELD, (0, 1), START, stp="rk4")  # type: ignore[call-arg]
+
+
+@pytest.mark.parametrize("wrong", [np.array([1.0, 2.0]), np.ones((4, 5))], ids=["short", "matrix"])
+def test_args_of_a_shape_that_psi_does_not_take_are_named(wrong: Any) -> None:
+    field = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m, args: -m / args["inertia"])
+    bound = lh.Propagator(field, "rk4").bind(START, dt=0.1)
+    message = rf"psi fails with these args \(.*broadcast.*\): args\['inertia'\] has shape \{str(wrong.shape)[:-1]}"
+    with pytest.raises(ShapeError, match=message):  # in the first call
+        lh.integrate(field, (0, 1), START, args={"inertia": wrong}, step="rk4", dt=0.1)
+    assert bound((0, 1), {"inertia": np.array([1.0, 2.0, 3.0])}).success
+    with pytest.raises(ShapeError, match=message):  # and in one that checks nothing else again
+        bound((0, 1), {"inertia": wrong})
+    assert bound((0, 1), {"inertia": np.array([1.0, 2.0, 3.0])}).success
+
+
+MASKED = np.ma.masked_array([0.6, 0.0, 0.8], [False, True, False])
+WITH_ARGS = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m, args: -m * args)
+
+
+@pytest.mark.parametrize(
+    ("what", "call"),
+    [
+        ("the start", lambda: lh.integrate(FIELD, (0, 1), MASKED)),
+        ("the start", lambda: lh.integrate(FIELD, (0, 1), [START, MASKED])),
+        ("the start", lambda: lh.Propagator(FIELD).bind(MASKED)),
+        ("the start", lambda: lh.integrate_ensemble(FIELD, (0, 1), [MASKED, START])),
+        ("t_eval", lambda: lh.integrate(FIELD, (0, 1), START, t_eval=MASKED)),
+        ("dt", lambda: lh.integrate(FIELD, (0, 1), np.eye(3), dt=MASKED + 0.1)),
+        ("atol", lambda: lh.integrate(FIELD, (0, 1), START, atol=MASKED)),
+        ("args", lambda: lh.integrate(WITH_ARGS, (0, 1), START, args=MASKED)),
+        ("args", lambda: lh.integrate(WITH_ARGS, (0, 1), np.eye(3), args=lh.PerTrajectory(MASKED[:, None]))),
+        ("psi", lambda: lh.GeneratorField(FIELD.representation, MASKED)),
+        ("a value of the field", lambda: lh.GeneratorField(FIELD.representation, lambda m: MASKED).psi(START)),
+        ("a point", lambda: FIELD.vector(MASKED)),
+        ("a point", lambda: lh.Action(FIELD.representation).act(START, MASKED)),
+        ("a point", lambda: lh.steps.correction(FIELD, lh.Euler(), MASKED, 2)),
+        ("a point", lambda: lh.Jet(MASKED)),
+    ],
+)
+def test_masked_arrays_are_refused_where_floats_come_in(what: str, call: Any) -> None:
+    with pytest.raises(InputError, match=f"^{what} is a masked array, and a masked entry has no number"):
+        call()

@@ -180,6 +180,7 @@ def test_written_at_intervals_and_removed_at_the_end(tmp_path: Path) -> None:
     assert any(seen) and not path.exists() and os.listdir(tmp_path) == []
 
 
+@pytest.mark.filterwarnings("ignore:status -1")
 def test_a_run_that_failed_may_go_on_with_more_steps(tmp_path: Path) -> None:
     path = tmp_path / "run.npz"
     case: dict[str, Any] = {"dt": 0.1, "step": lh.RKMK("rk4"), "checkpoint": path}

@@ -180,6 +180,7 @@ def test_diagnostics_are_in_the_report(engine: str) -> None:
     assert "longest, largest: 0.125" in str(sol.report) and "way, sum over steps: 6" in str(sol.report)
 
 
+@pytest.mark.filterwarnings("ignore:status -1")
 @pytest.mark.parametrize("engine", ["numpy", "llvm", pytest.param("jax", marks=pytest.mark.slow)])
 def test_a_step_that_is_not_valid_ends_a_run_of_fixed_steps_and_shrinks_others(engine: str) -> None:
     if engine != "numpy":
@@ -191,6 +192,7 @@ def test_a_step_that_is_not_valid_ends_a_run_of_fixed_steps_and_shrinks_others(e
     assert lh.integrate(BODY, (0, 2), START, step=Midpoint(), rtol=1e-2).n_steps < adaptive.n_steps
 
 
+@pytest.mark.filterwarnings("ignore:status -1")
 @pytest.mark.parametrize("engine", ["numpy", "llvm"])
 def test_a_composed_step_composes_clocks_numbers_and_refusals(engine: str) -> None:
     """Conserving over Corrected over a step of a user."""

@@ -102,6 +102,7 @@ def test_the_solution_is_not_changed_by_asking() -> None:
     assert sol.nfev == calls and np.array_equal(y, sol.y)
 
 
+@pytest.mark.filterwarnings("ignore:status -1")
 def test_a_trajectory_that_never_moved() -> None:
     field = lh.GeneratorField(lh.defining(lh.so(2)), lambda m: 1e160 * m[..., :1])
     start = np.array([[1e-200, 1e-200], [1.0, 1.0]])

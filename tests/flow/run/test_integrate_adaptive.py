@@ -66,6 +66,7 @@ def test_absolute_and_relative_alone() -> None:
     assert lh.integrate(field, (0, 2), small, rtol=0, atol=1.0).n_steps < alone.n_steps
 
 
+@pytest.mark.filterwarnings("ignore:status -1")
 def test_tolerances_below_round_off_are_round_off() -> None:
     for step in (lh.LieTaylor(8), lh.Corrected(lh.Euler(), 8), lh.RKMK("rk45")):
         sol = lh.integrate(BODY, (0, 0.2), M0, step=step, rtol=1e-300, atol=0, max_steps=5000)
@@ -110,6 +111,7 @@ def test_stiff_problems_get_there() -> None:
         assert sol.success and abs(np.arctan2(*sol.y[::-1, -1]) - 0.4) < 2e-3
 
 
+@pytest.mark.filterwarnings("ignore:status -1")
 def test_a_pole_of_the_solution_is_not_passed() -> None:
     # m' = m^2 from 1: 1/(1 - t)
     field = lh.GeneratorField(SCALING, lambda m: m)

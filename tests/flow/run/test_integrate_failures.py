@@ -1,13 +1,16 @@
 """When something fails: which trajectory, with what message, and what there is of the solution; the others go on."""
 
+import warnings
 from typing import Any
 
 import numpy as np
 import pytest
 
 import liehom as lh
-from liehom.base.errors import SeriesError
+from liehom.base.errors import InputError, SeriesError
 from liehom.flow.run.run import Run
+
+pytestmark = pytest.mark.filterwarnings("ignore:status -1")  # runs that fail say so by a warning too
 
 RHO = lh.defining(lh.so(3))
 MANY = np.array([[0.6, 0.0, 0.8], [0.36, 0.48, 0.8], [0.48, 0.64, 0.6], [0.8, 0.6, 0.0]])
@@ -165,3 +168,73 @@ def test_linear_algebra_that_fails_blames_psi_only_if_a_derivative_is_not_finite
     smooth, at_the_root = [0.6, 0.8, 0.0], [1.0, 0.0, 0.0]
     assert "psi" in lh.integrate(field, (0, 1), at_the_root, step=lh.LieTaylor(2), dt=0.1).message
     assert "linear algebra" in lh.integrate(field, (0, 1), smooth, step=lh.LieTaylor(2), dt=0.1).message
+
+
+def test_a_run_that_fails_warns_once_whoever_makes_it() -> None:
+    field, message = singular(1.0), r"^status -1: "
+    how: dict[str, Any] = {"dt": 0.1}
+    propagator = lh.Propagator(field, lh.RKMK("rk4"))
+    bound = propagator.bind(MANY[0], **how)
+    for call in (
+        lambda: lh.integrate(field, (0, 1), MANY[0], step="rk4", **how),
+        lambda: propagator((0, 1), MANY[0], **how),
+        lambda: bound((0, 1)),
+        lambda: bound((0, 1)),
+        lambda: lh.integrate_ensemble(field, (0, 1), MANY, chunk=2, step="rk4", **how),
+    ):
+        with pytest.warns(RuntimeWarning, match=message) as caught:
+            sol = call()
+        assert not sol.success and len(caught) == 1 and caught[0].filename == __file__
+        assert str(caught[0].message) == f"status -1: {sol.message}"
+
+
+# -- points of any size ---------------------------------------------------------------------------------------
+SIZED_STEPS = [None, "rk45", "rk4", lh.Corrected(lh.Euler(), 3)]
+EXPONENTS = np.array([-300, -160, -145, -137, -100, -60, 0, 60, 100, 137, 145, 160, 300])
+
+
+def sized(rho: lh.Representation) -> lh.GeneratorField:
+    """A generator psi(m / args), so that the multiples of a point by args move alike."""
+    rng = np.random.default_rng(3)
+    constant, linear = rng.normal(size=rho.algebra.dimension), 0.5 * rng.normal(size=(rho.size, rho.algebra.dimension))
+    return lh.GeneratorField(rho, lambda m, args: constant + (m / args) @ linear)
+
+
+@pytest.mark.parametrize("engine", ["numpy", "llvm", pytest.param("jax", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("step", SIZED_STEPS, ids=repr)
+def test_points_of_any_size_end_right_or_are_refused(step: Any, engine: str) -> None:
+    """Squares of coordinates overflow above 1e154: such a point seemed fixed by the group, and ended where it began."""
+    pytest.importorskip("llvmlite" if engine == "llvm" else "numpy")
+    field = sized(lh.defining(lh.so(3)))
+    how: dict[str, Any] = {"step": step, "engine": engine, "t_eval": [1.0]}
+    how |= {"dt": 0.05} if step == "rk4" or isinstance(step, lh.Corrected) else {"atol": 0.0}
+    point = np.array([0.6, -0.3, 0.7])
+    for exponent in EXPONENTS[abs(EXPONENTS) > 138]:
+        with pytest.raises(InputError, match=rf"the largest coordinate 7e\{exponent - 1:+d}.*take other units"):
+            lh.integrate(field, (0, 1), 10.0**exponent * point, args=1.0, **how)
+    sizes = 10.0 ** EXPONENTS[abs(EXPONENTS) < 138, None]
+    sol = lh.integrate(field, (0, 1), sizes * point, args=lh.PerTrajectory(sizes), **how)
+    ends = sol.y[..., 0] / sizes
+    assert sol.success and np.abs(ends - ends[3]).max() < 1e-12 and np.abs(ends[3] - point).max() > 0.1
+
+
+@pytest.mark.parametrize("rate", [60.0, -60.0])
+@pytest.mark.parametrize("engine", ["numpy", "llvm", pytest.param("jax", marks=pytest.mark.slow)])
+def test_points_that_leave_the_range_of_floats_do_not_end_in_success(engine: str, rate: float) -> None:
+    rho = lh.Representation.from_matrices([[[0, -1], [1, 0]], [[1, 0], [0, 1]]])
+    starts = 10.0 ** (np.sign(rate) * np.array([[0], [100], [120], [130], [137]])) * [1.0, 2.0]
+    step: Any
+    for step in (None, "rk45"):
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", RuntimeWarning)
+            sol = lh.integrate(lh.GeneratorField(rho, [1, rate]), (0, 1), starts, step=step, atol=0, engine=engine)
+        turn = np.array([[np.cos(1), np.sin(1)], [-np.sin(1), np.cos(1)]])
+        errors = np.abs(sol.y[np.arange(5), :, sol.n_steps] / (starts @ turn * np.exp(rate)) - 1).max(axis=-1)
+        assert (sol.statuses[:2] == 0).all() and (errors[sol.statuses == 0] < 1e-4).all()
+
+
+def test_floats_of_32_bits_have_a_range_of_their_own() -> None:
+    jax = pytest.importorskip("jax")
+    field = sized(lh.defining(lh.so(3)))
+    with pytest.raises(InputError, match=r"coordinate 1e\+15, expected 0 or a number from 9.1e-13 to 2.2e\+12"):
+        lh.integrate(field, (0, 1), jax.numpy.array([1e15, 0, 0], "float32"), args=1.0, dt=0.1, engine="jax")

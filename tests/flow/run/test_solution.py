@@ -30,6 +30,7 @@ RUNS: dict[str, dict[str, Any]] = {
 }  # fmt: skip
 
 
+@pytest.mark.filterwarnings("ignore:status -1")
 @pytest.mark.parametrize("name", RUNS)
 def test_what_is_read_is_what_was_written(name: str, tmp_path: Path) -> None:
     sol: Any = lh.integrate(FIELD, (0, 1), **RUNS[name])

@@ -306,6 +306,7 @@ def test_adaptive_steps_of_a_grid_are_those_of_all_spins_as_one_point(step: Any)
     assert one.n_steps[0, 0] == grid.n_steps[0, 0, 0]
 
 
+@pytest.mark.filterwarnings("ignore:status -1")
 def test_a_lattice_fails_as_a_whole() -> None:
     model = LandauLifshitz((3,), exchange=1.0, applied=lambda t: [np.where(t > 0.5, np.nan, 0.0) + 0 * t, 0 * t, 0 * t])
     sol = model.integrate((0, 1), on_sphere(20, 3), step=lh.RKMK("rk45"))

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings, strategies as st
+from hypothesis import example, given, settings, strategies as st
 from scipy.optimize import brentq
 
 import liehom as lh
@@ -40,13 +40,24 @@ def angle_after(theta: float, z: float) -> float:
 
 @settings(max_examples=examples(60), deadline=None)
 @given(st.floats(0.01, 3.1), st.sampled_from([0.3, 1.0, 3.0, 10.0, 100.0, 1000.0, 1e6]))
+@example(3.0625, 10.0)  # a short step of Newton's method leads against the flow, to another solution
+@example(3.0941, 1e6)
 def test_backward_euler_ends_at_the_angle_where_the_pseudo_transient_ends(theta: float, z: float) -> None:
     if 1 < z * np.sin(theta) / theta < 1.01:
         return  # next to a double root
     start = np.array([np.sin(theta), 0.0, np.cos(theta)])
-    made = lh.integrate(relaxing(z), (0, 1), start, step=lh.BackwardEuler(), dt=1.0).y[:, -1]
-    assert abs(np.arctan2(made[0], made[2]) - angle_after(theta, z)) < 1e-11
-    assert abs(made @ made - 1) < 1e-13
+    end = lh.integrate(relaxing(z), (0, 1), start, step=lh.BackwardEuler(), dt=1.0).y[:, -1]
+    assert abs(np.arctan2(end[0], end[2]) - angle_after(theta, z)) < 1e-11
+    assert abs(end @ end - 1) < 1e-13
+
+
+@pytest.mark.parametrize("z", [10.0, 100.0])
+def test_compiled_steps_leave_the_choice_of_the_solution_to_numpy(z: float) -> None:
+    angles = np.array([3.0625, 3.0743, 2.0, 3.09, 1.0])
+    starts = np.stack([np.sin(angles), 0 * angles, np.cos(angles)], axis=-1)
+    sol = lh.integrate(relaxing(z), (0, 3), starts, step=lh.BackwardEuler(), dt=1.0, t_eval=[1.0, 3.0], engine="llvm")
+    wanted = [angle_after(theta, z) for theta in angles]
+    np.testing.assert_allclose(np.arctan2(sol.y[:, 0, 0], sol.y[:, 2, 0]), wanted, rtol=0, atol=1e-11)
 
 
 @pytest.mark.parametrize("z", [1.0, 10.0, 1000.0])
