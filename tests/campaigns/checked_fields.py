@@ -270,6 +270,7 @@ def groups(seed: int) -> list[Group]:
 
 
 X, Y, Z = np.eye(3)
+Q = np.array([-(5**0.5), 0.0, 2.0]) / 3  # on the circle about Z through the start
 
 
 def body(m: Any) -> Any:
@@ -280,7 +281,7 @@ def named() -> Iterator[Group]:
     """Fields on the sphere as they are in textbooks and in reports of wrong results, with widths in units of time."""
 
     def one(name: str, width: float, psi: Callable[..., Any], span: tuple[float, float] = (0.0, SPAN)) -> Group:
-        still = psi.__code__.co_argcount == 1
+        still = psi.__code__.co_varnames[1:2] != ("t",)
         return Group(name, "sphere", psi, {}, np.array([width / abs(span[1] - span[0])]), span, still)
 
     def s(x: Any, axis: np.ndarray) -> Any:
@@ -323,5 +324,11 @@ def named() -> Iterator[Group]:
     yield one(
         "hot spot", 0.1, lambda m: 0.5 * Z + s(20 * np.exp(-(((m - [-0.2, 0.72, 0.667]) ** 2).sum(axis=-1)) / 5e-3), X)
     )
+    for w in (0.1, 0.06, 0.04):
+        yield one(
+            f"hot spot {w} on a circle",
+            w,
+            lambda m, w=w: Z + s(1.2 / w * np.exp(-((m - Q) ** 2).sum(axis=-1) / w**2), X),
+        )
     yield one("saturation", 0.02, lambda m: np.tanh(m / 0.02) * [1, -2, 0.5])
     yield one("reciprocal dip", 0.03, lambda m: body(m) / (1e-3 + m[..., :1] ** 2) * 0.2)

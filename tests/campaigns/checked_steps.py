@@ -58,6 +58,7 @@ def allowed(rtol: float, m: np.ndarray) -> float:
 def key(group: Group, j: int) -> str:
     """Digest of all that the end of a field follows from."""
     values = [(name, np.asarray(x[j]).tolist()) for name, x in sorted(group.args.items())]
+    values += [("default", x) for x in group.psi.__defaults__ or ()]
     space, psi = group.space_of, inspect.getsource(SHAPES.get(group.name, group.psi))
     constants = [space.start.tolist(), space.linear.tolist(), space.matrices.tolist()]
     return hashlib.sha256(repr((group.span, psi, values, constants)).encode()).hexdigest()[:20]

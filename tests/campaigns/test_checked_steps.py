@@ -50,6 +50,7 @@ def test_smooth_fields_have_the_accuracy_that_is_asked_for(name: str, space: str
 def test_there_are_enough_fields_and_a_seed_draws_them_again() -> None:
     names = [name for group in GROUPS.values() for name in group.names]
     assert len(set(names)) == len(names) >= 400
+    assert len({key(group, j) for group in GROUPS.values() for j in range(len(group.widths))}) == len(names)
     assert sum(len(group.widths) for group in GROUPS.values() if group.smooth) >= 60
     for group, again, other in zip(GROUPS.values(), groups(2031), groups(2032), strict=True):
         rhs, start = group.rhs(0), group.space_of.start
