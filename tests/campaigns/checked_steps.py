@@ -195,12 +195,11 @@ def of_heyoka(group: Group, engine: str, step: str, rtol: float, options: dict[s
         sum(psi[r] * matrices[r][i, k] * m[k] for r, i, k in np.argwhere(matrices) if i == row) for row in range(len(m))
     ]
     x = [(e if isinstance(e, Symbol) else 0 * m[0]).expression for e in x]
-    ta = hy.taylor_adaptive(
-        list(zip(names, x, strict=True)), [0.0] * len(m), tol=rtol, compact_mode=True, pars=[0.0] * len(values)
-    )
+    ta = hy.taylor_adaptive(list(zip(names, x, strict=True)), [0.0] * len(m), tol=rtol, compact_mode=True)
     runs: list[Run] = []
     for j in range(len(group.widths)):
-        ta.time, ta.state[:], ta.pars[:] = group.span[0], group.space_of.start, [v[j] for v in values]
+        ta.time, ta.state[:] = group.span[0], group.space_of.start
+        ta.pars[:] = [v[j] for v in values[: len(ta.pars)]]  # those after the last that psi uses are not there
         outcome, _, _, steps, *_ = ta.propagate_until(group.span[1], max_steps=MOST_STEPS)
         runs.append((np.array(ta.state), outcome == hy.taylor_outcome.time_limit, int(steps), str(outcome)))
     return runs
