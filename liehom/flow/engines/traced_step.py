@@ -224,9 +224,8 @@ def _all_of(tape: Tape, conditions: Sequence[Expr]) -> Expr | None:
 def _traced_limits(tape: Tape, limits: SizeLimits) -> SizeLimits:
     """The numbers of the limits by name, as constants of the run; `moves` as it is, and a gap that is no number."""
     fixed = {"moves", "gap"} if limits.gap is None or is_unbounded(limits.gap) else {"moves"}
-    return limits._replace(
-        **{k: Traced(tape, tape.run_constant(k, x)) for k, x in limits._asdict().items() if k not in fixed}
-    )
+    traced: Any = {k: Traced(tape, tape.run_constant(k, x)) for k, x in limits._asdict().items() if k not in fixed}
+    return limits._replace(**traced)
 
 
 def _counted(tape: Tape, field: GeneratorField) -> GeneratorField:

@@ -49,7 +49,10 @@ def gap_of(looks: int | None, span: Real, field: GeneratorField) -> Real | None:
     """The longest time between two looks: None if there are none, inf if there is one in a step."""
     if looks is None:
         looks = LOOKS if field.time_dependent else -1
-    return None if looks == 0 else float("inf") if looks < 0 else abs(span) / (looks + OFFSET)
+    if looks <= 0:
+        return None if looks == 0 else float("inf")
+    gap: Real = abs(span) / (looks + OFFSET)  # type: ignore[operator]
+    return gap
 
 
 def is_unbounded(gap: Real | None) -> bool:
@@ -107,12 +110,11 @@ def _repeated(body: Callable[..., list[Any]], state: list[Any]) -> Sequence[Any]
     if is_jax(first):
         from jax import lax, numpy as jnp
 
-        kinds = [x.dtype for x in state]
-        return list(
-            lax.while_loop(
-                lambda s: jnp.any(s[0]), lambda s: [x.astype(k) for x, k in zip(body(*s), kinds, strict=True)], state
-            )
-        )
+        def again(s: list[Any]) -> list[Any]:
+            return [x.astype(y.dtype) for x, y in zip(body(*s), state, strict=True)]
+
+        last: list[Any] = lax.while_loop(lambda s: jnp.any(s[0]), again, state)
+        return last
     while state[0].any():
         state = body(*state)
     return state

@@ -193,7 +193,8 @@ def tried_size(
     xp, axes = namespace(m, t), len(psi.field.sites)
     left: Any = xp.abs(limits.end - t)
     bound: Any = xp.minimum(proposal, largest_size(limits.max_step, left))
-    looks, cuts, moves = 0.0, 0.0, limits.moves
+    looks: Any = 0.0
+    cuts, moves = looks, limits.moves
     embedded = local.estimate_order is not None
     if embedded and limits.gap is not None:
         if is_unbounded(limits.gap):

@@ -242,12 +242,14 @@ class Automaton:
         # below this time nothing is left
         self.rest = self.dtype.type(8 * np.finfo(self.dtype).eps * max(abs(span[0]), abs(span[1])))
         self.tiny = max(float(self.rest), options.least_step)  # the smallest step size
-        gap = gap_of(options.looks, span[1] - span[0], psi.field)
-        moves = np.inf if options.events is None else MAX_MOVE_WITH_EVENTS
         self.looked: Diagnostics = {}  # what the last step was checked by
+        end: Any = span[1]  # in the type of the points, as `direction`
+        direction: Any = self.direction
         self.limits: SizeLimits = SizeLimits(
-            options.rtol, options.atol, options.max_step, span[1], self.direction, self.tiny, gap, moves
-        )
+            options.rtol, options.atol, options.max_step, end, direction, self.tiny,
+            gap=gap_of(options.looks, end - span[0], psi.field),
+            moves=np.inf if options.events is None else MAX_MOVE_WITH_EVENTS,
+        )  # fmt: skip
         self.keeps: bool = options.t_eval is None or options.dense_output
         self.logs = LOGGER.isEnabledFor(logging.DEBUG)  # asked once: a run without a log pays nothing for it
         self.step = step.prepare(action, self.psi, self.start, np.full(self.shape, span[0], dtype=self.dtype))
@@ -298,7 +300,8 @@ class Automaton:
         """The step size that the tolerance asks for, positive, (...,)."""
         limits = self.limits
         if local.estimate_order is not None and np.isinf(now.h).any():
-            now.h = np.where(np.isinf(now.h), first_size(limits, local, self.psi, now.m, now.t), now.h)
+            guess: Any = first_size(limits, local, self.psi, now.m, now.t)
+            now.h = np.where(np.isinf(now.h), guess, now.h)
         h, good, looks, cuts = tried_size(
             limits, self.action, self.psi, local, self.step.order, now.m, now.t, now.h, self.psi.field
         )
@@ -336,7 +339,10 @@ class Automaton:
 
     def _judged(self, now: RunState, local: LocalStep, h: Array) -> BooleanArray | bool:
         """Which lanes accept the step by its estimate, all without one; adapts the next step size."""
-        accepted, now.h = judgement(self.limits, local, now.m, h[..., None], self.axes)
+        accepted: Any
+        proposal: Any
+        accepted, proposal = judgement(self.limits, local, now.m, h[..., None], self.axes)
+        now.h = proposal
         return accepted
 
     def _looked_into(self, now: RunState, stops: Stops, proposal: StepProposal) -> tuple[StepProposal, BooleanArray]:

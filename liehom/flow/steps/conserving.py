@@ -283,7 +283,6 @@ class ConservingStep(LocalStep):
         super().__init__(base.action, base.m, clock=base.clock)
         self.base, self.found, self.n = base, found, n
         self.estimate_order, self.widest_gap, self.trajectory = base.estimate_order, base.widest_gap, base.trajectory
-        self.look = base.look  # the values of first integrals are not what the step is compared with
         self._target = found.value if target is None else target
         self._one, self._linear = one_exponential, linear
         self._unit = TOLERATED_UNITS * float(np.finfo(found.m.dtype).eps) * found.scale
@@ -305,6 +304,9 @@ class ConservingStep(LocalStep):
 
     def size(self, limits: StepLimits) -> Values | None:
         return self.base.size(limits)
+
+    def look(self, h: Values, time: Values) -> tuple[Values, Values]:
+        return self.base.look(h, time)
 
     def estimate(self, h: Values) -> Values:
         return self.base.estimate(h)
