@@ -23,6 +23,10 @@ MIN_ORDER = 4
 MORE_ORDERS, SHORTER = 3, 0.7
 """The second solution, for the accuracy: orders added to those of the first, and the ratio of the lengths of pieces."""
 
+LOOKS = 512  # looks at psi on the way to a target, besides one at the end of each piece
+ALLOWED_RESIDUAL = 1e4  # h |p'(s) - X(p(s))| of a piece p, in units of the tolerance times |m|
+OFFSET, CUT = 0.382, 0.7  # looks are not symmetric in a piece; a piece that does not pass is shortened by this factor
+
 
 @final
 class Reference:
@@ -51,6 +55,7 @@ class Reference:
     -----
     All trajectories of an ensemble have the same pieces, because psi is always called on all of them. A piece ends at
     tolerance^(1/n) times the radius of convergence, estimated by the root test on the upper half of the coefficients.
+    It is shorter if psi within it is not what the series says (docs/step-sizes.md).
 
     Examples
     --------
@@ -223,7 +228,10 @@ class _Branch:
             coefficients = [np.broadcast_to(flow.point(k), self.point.shape) for k in range(self.order + 1)]
             series = np.stack(coefficients, axis=-1).astype(self.point.dtype)
             length = self._length(series)
-            length = length if np.isfinite(length) else max(abs(target - here), here.dtype.type(1))
+            way = abs(target - self.times[0]) or here.dtype.type(1)
+            length = min(length, way) if length == length else length
+            while length > 0 and not self._passes(series, length, way):
+                length = CUT * length
             after = here + self.direction * length
             point = _horner(series, after - here, 0)
         if not bool(np.isfinite(point).all()) or after == here or length < 4 * np.finfo(here.dtype).eps * abs(here):
@@ -234,6 +242,20 @@ class _Branch:
         self.pieces.append(series)
         self.times.append(after)
         self.point = point
+
+    def _passes(self, series: Array, length: np.floating[Any], way: np.floating[Any]) -> bool:
+        """Whether the velocity of a piece is that of the field, at its end and at looks within the way to the target."""
+        here, count = self.times[-1], int(np.ceil(LOOKS * length / way))
+        allowed = ALLOWED_RESIDUAL * self.tolerance * np.linalg.norm(series[..., 0], axis=-1)
+        times = np.abs(here) * np.linalg.norm(2 * series[..., min(2, self.order)], axis=-1)
+        rounded = 8 * np.finfo(here.dtype).eps * (np.linalg.norm(series[..., 1], axis=-1) + times)
+        for j in range(count):
+            s = self.direction * length * (1 if j == 0 else (count - j - OFFSET) / (count - OFFSET))
+            t = np.full(self.point.shape[:-1], here + s)
+            lack = np.linalg.norm(_horner(series, s, 1) - self.field.vector(_horner(series, s, 0), t), axis=-1)
+            if not bool((length * np.maximum(lack - rounded, 0) <= allowed).all()):
+                return False
+        return True
 
     def _length(self, series: Array) -> Any:
         """tolerance^(1/n) times the smallest radius of convergence; inf if it has none, 0 (an error later) for NaN."""

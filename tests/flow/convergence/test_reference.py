@@ -299,3 +299,15 @@ def test_what_the_distance_refuses() -> None:
         orbit_distance(ref, sphere(4), 1.0, window=-1.0)
     with pytest.raises(InputError, match="not a number"):
         orbit_distance(ref, sphere(4), "soon")
+
+
+@pytest.mark.parametrize("width", [0.3, 0.1, 0.05])
+def test_a_pulse_is_not_jumped_over(width: float) -> None:
+    """psi is 0 before and after the pulse to the last digit, and its integral is known."""
+    angle = 3 * width * np.sqrt(2 * np.pi)
+    field = lh.GeneratorField(
+        lh.defining(lh.so(2)), lambda m, t: 3 * np.exp(-(((t - 5.2) / width) ** 2) / 2)[..., None]
+    )
+    found = Reference(field, [1.0, 0.0])
+    assert np.abs(found(10.0) - [np.cos(angle), np.sin(angle)]).max() < 1e-13
+    assert found.accuracy(10.0) < 1e-13
