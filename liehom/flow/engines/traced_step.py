@@ -222,7 +222,7 @@ def _all_of(tape: Tape, conditions: Sequence[Expr]) -> Expr | None:
 
 
 def _traced_limits(tape: Tape, limits: SizeLimits) -> SizeLimits:
-    """The numbers of the limits by name, as constants of the run; `moves` as it is, and a gap that is no number."""
+    """The numbers of the limits by name, as constants of the run; `moves` and a gap that is None or inf as they are."""
     fixed = {"moves", "gap"} if limits.gap is None or is_unbounded(limits.gap) else {"moves"}
     traced: Any = {k: Traced(tape, tape.run_constant(k, x)) for k, x in limits._asdict().items() if k not in fixed}
     return limits._replace(**traced)

@@ -121,8 +121,8 @@ def integrate(
 
     An adaptive step size follows from the estimate of an embedded pair, or from the Taylor coefficients of the error at
     the initial point of a step. Before the step is taken, psi is looked at within it, and the size is cut if psi is not
-    what the estimate assumes: pulses, ramps, switches and walls are seen if they are longer than the time between two
-    looks. No method sees what lies between its looks: give `max_step` for a shorter pulse (docs/step-sizes.md).
+    what the coefficients say. Pulses, ramps, switches and walls are seen if they are longer than the time between two
+    looks. No method sees what lies between its looks, so give `max_step` for a shorter pulse (docs/step-sizes.md).
 
     A trajectory ends with status -1, and with the points computed so far, if psi is not finite, the step size is below
     round-off, τ does not increase at a rate between 1/5 and 5 over the step, the equations of an implicit step have no
