@@ -19,7 +19,7 @@ FILE = Path(__file__).with_name("samples.toml")
 ROOT = FILE.parent.parent
 GOLDEN_RATIO = 0.6180339887498949
 EXAMPLES_PER_DEFAULT_EXAMPLE = 4  # hypothesis draws this many times more examples with `--slow`
-SHARDS = 8
+SHARDS = 64  # one of them beside the default run is about a minute of processor time
 
 whole = False  # set by conftest before any test module is imported
 shard: int | None = None  # so is this
