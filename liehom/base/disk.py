@@ -201,6 +201,22 @@ def digest(*parts: npt.ArrayLike) -> str:
     return state.hexdigest()
 
 
+def differing(own: str, expected: str) -> str:
+    """Names of what differs between two fingerprints, JSON objects of digests; those with "" agree with all.
+
+    Examples
+    --------
+    >>> differing('{"dt": "a", "psi": "b", "count": ""}', '{"dt": "a", "psi": "c", "count": "d"}')
+    'psi'
+    """
+    try:
+        one, other = json_object(own), json_object(expected)
+    except ValueError:
+        return "" if own == expected else "the computation, its numbers, options or chunk"
+    names = (name for name in {**one, **other} if one.get(name) != other.get(name))
+    return ", ".join(sorted(name for name in names if "" not in (one.get(name), other.get(name))))
+
+
 def checksum(arrays: Mapping[str, npt.ArrayLike], *texts: str) -> str:
     """Digest of named arrays and of strings: names, types, shapes and contents, whatever the order of the names.
 

@@ -23,6 +23,7 @@ from liehom.base.disk import (
     MARK,
     check_version,
     checksum,
+    differing,
     json_object,
     read_arrays,
     write_arrays,
@@ -260,10 +261,9 @@ def _checked(path: str, description: dict[str, Any], fingerprint: str | None) ->
     own = str(description.get("fingerprint"))
     if description != _about(own):
         raise FormatError(f"the description of the store {path!r} is damaged: delete the store, or give another path")
-    if fingerprint is not None and own != fingerprint:
+    if fingerprint is not None and (different := differing(own, fingerprint)):
         raise InputError(
-            f"the store {path!r} belongs to another problem (the computation, its numbers, options or chunk differ): "
-            "delete it, or give another path"
+            f"the store {path!r} belongs to another problem ({different} differ): delete it, or give another path"
         )
     return own
 
