@@ -29,7 +29,7 @@ from liehom.base.disk import (
     write_arrays,
     write_atomically,
 )
-from liehom.base.errors import CertificateError, DamageWarning, FormatError, InputError
+from liehom.base.errors import CertificateError, DamageWarning, FormatError, InputError, LimitError
 
 # Stores of finished results on disk: a folder of .npz files, or a zarr group.
 #
@@ -174,6 +174,8 @@ class _Folder(Store):
                 arrays, (facts,), is_whole = read_arrays(file, ["facts"], self._mark, name)
             _require_whole(is_whole)
             return arrays, json_object(facts)
+        except LimitError:
+            raise
         except DAMAGED as error:
             raise _damaged(os.fspath(path), error) from None
 
