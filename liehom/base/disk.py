@@ -6,6 +6,7 @@ import contextlib
 import errno
 import hashlib
 import json
+import math
 import os
 import secrets
 import signal
@@ -21,7 +22,8 @@ from typing import Any, BinaryIO
 import numpy as np
 import numpy.typing as npt
 
-from liehom.base.errors import FormatError
+from liehom.base.budget import within
+from liehom.base.errors import FormatError, LimitError
 
 LONGEST_STEM = 200  # characters of a file name that its temporary name repeats; file systems allow 255 bytes
 MARK = "checksum"  # Name of the checksum in archives and JSON objects
@@ -201,6 +203,16 @@ def digest(*parts: npt.ArrayLike) -> str:
     return state.hexdigest()
 
 
+def differing(own: str, expected: str) -> str:
+    """Names of what differs between two fingerprints, JSON objects of digests, of which "" agrees with all."""
+    try:
+        one, other = json_object(own), json_object(expected)
+    except ValueError:
+        return "" if own == expected else "the computation, its numbers, options or chunk"
+    names = (name for name in {**one, **other} if one.get(name) != other.get(name))
+    return ", ".join(sorted(name for name in names if "" not in (one.get(name), other.get(name))))
+
+
 def checksum(arrays: Mapping[str, npt.ArrayLike], *texts: str) -> str:
     """Digest of named arrays and of strings: names, types, shapes and contents, whatever the order of the names.
 
@@ -234,11 +246,32 @@ def write_arrays(file: BinaryIO, arrays: Mapping[str, npt.ArrayLike], texts: Map
 def read_arrays(
     file: BinaryIO, texts: Iterable[str], *context: str
 ) -> tuple[dict[str, npt.NDArray[Any]], list[str], bool]:
-    """Arrays of an .npz archive, its strings ('' if missing), whether the checksum agrees; may raise `DAMAGED`."""
-    with np.load(file, allow_pickle=False) as archive:
-        arrays = {name: archive[name] for name in archive.files}
+    """Arrays of an .npz archive, its strings ('' if missing), whether the checksum agrees; may raise `DAMAGED`.
+
+    Before memory is allocated, the sizes are compared: those in the headers of the arrays with those in the directory,
+    and their sum with the file, which a compressed one may exceed up to the limit `file_bytes`.
+    """
+    with zipfile.ZipFile(file) as archive:
+        entries = archive.infolist()
+        unpacked = sum(entry.file_size for entry in entries)
+        if unpacked > file.seek(0, os.SEEK_END):
+            within("file_bytes", unpacked, "the arrays of an archive have {} bytes")
+        arrays = {entry.filename.removesuffix(".npy"): _array(archive, entry) for entry in entries}
     mark, *values = (str(arrays.pop(name, "")) for name in (MARK, *texts))
     return arrays, values, mark == checksum(arrays, *context, *values)
+
+
+def _array(archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> npt.NDArray[Any]:
+    """An array of an archive, if its header states the size of its contents."""
+    with archive.open(entry) as member:
+        first = np.lib.format.read_magic(member) == (1, 0)
+        header = (np.lib.format.read_array_header_1_0 if first else np.lib.format.read_array_header_2_0)(member)
+        stated, found = math.prod(header[0]) * header[2].itemsize, entry.file_size - member.tell()
+    if stated != found or not header[2].itemsize:
+        raise ValueError(f"the header of {entry.filename} states {stated} bytes, there are {found}")
+    with archive.open(entry) as member:
+        array: npt.NDArray[Any] = np.lib.format.read_array(member, allow_pickle=False)
+        return array
 
 
 def load_arrays(path: str | os.PathLike[str], what: str, version: str, text: str) -> tuple[dict[str, Any], str]:
@@ -247,6 +280,8 @@ def load_arrays(path: str | os.PathLike[str], what: str, version: str, text: str
     try:
         with open(path, "rb") as file:
             arrays, (stated, value), is_whole = read_arrays(file, ["format", text])
+    except LimitError:
+        raise
     except DAMAGED as error:
         raise FormatError(f"{name!r} is not a {what} of liehom, or is damaged: {error}") from None
     check_version(name, what, stated, version)

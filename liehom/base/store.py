@@ -23,12 +23,13 @@ from liehom.base.disk import (
     MARK,
     check_version,
     checksum,
+    differing,
     json_object,
     read_arrays,
     write_arrays,
     write_atomically,
 )
-from liehom.base.errors import CertificateError, DamageWarning, FormatError, InputError
+from liehom.base.errors import CertificateError, DamageWarning, FormatError, InputError, LimitError
 
 # Stores of finished results on disk: a folder of .npz files, or a zarr group.
 #
@@ -173,6 +174,8 @@ class _Folder(Store):
                 arrays, (facts,), is_whole = read_arrays(file, ["facts"], self._mark, name)
             _require_whole(is_whole)
             return arrays, json_object(facts)
+        except LimitError:
+            raise
         except DAMAGED as error:
             raise _damaged(os.fspath(path), error) from None
 
@@ -258,10 +261,9 @@ def _checked(path: str, description: dict[str, Any], fingerprint: str | None) ->
     own = str(description.get("fingerprint"))
     if description != _about(own):
         raise FormatError(f"the description of the store {path!r} is damaged: delete the store, or give another path")
-    if fingerprint is not None and own != fingerprint:
+    if fingerprint is not None and (different := differing(own, fingerprint)):
         raise InputError(
-            f"the store {path!r} belongs to another problem (the computation, its numbers, options or chunk differ): "
-            "delete it, or give another path"
+            f"the store {path!r} belongs to another problem ({different} differ): delete it, or give another path"
         )
     return own
 

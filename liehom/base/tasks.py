@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import pickle
 import secrets
+import sys
 import time
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -74,6 +75,7 @@ class Pool:
             self._executor = executor
         if self._executor is None:
             raise BrokenExecutor("there is no executor")
+        _check_fork(self._executor)
         try:
             return self._executor.submit(function, task)
         except RuntimeError as error:  # raised also by an executor that was shut down
@@ -120,6 +122,17 @@ def explained(error: BaseException) -> BaseException:
 def _is_executor(source: object) -> TypeGuard[TaskExecutor]:
     """Whether it has the methods of an executor and is not a class of executors."""
     return not isinstance(source, type) and callable(getattr(source, "submit", None))
+
+
+def _check_fork(executor: TaskExecutor) -> None:
+    """Raise `InputError` if an executor is about to fork this process, in which JAX has threads that hold locks."""
+    begun, context = getattr(executor, "_processes", None), getattr(executor, "_mp_context", None)
+    jax = getattr(sys.modules.get("jax._src.xla_bridge"), "_backends", None)
+    if jax and context is not None and not begun and context.get_start_method() == "fork":
+        raise InputError(
+            "the executor forks this process, in which JAX has started threads, and its workers may wait for ever: "
+            "ProcessPoolExecutor(mp_context=multiprocessing.get_context('spawn'))"
+        )
 
 
 # Results of many tasks on any `concurrent.futures.Executor`, in order of completion.

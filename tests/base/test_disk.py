@@ -7,6 +7,9 @@ import signal
 import subprocess
 import sys
 import threading
+import tracemalloc
+import zipfile
+from collections.abc import Callable
 from pathlib import Path
 from typing import BinaryIO
 
@@ -16,7 +19,7 @@ import pytest
 import liehom as lh
 from liehom.base import disk
 from liehom.base.disk import checksum, write_atomically
-from liehom.base.errors import FormatError, InputError
+from liehom.base.errors import FormatError, InputError, LimitError
 from liehom.base.store import open_store
 
 FILL = """
@@ -201,3 +204,73 @@ def test_an_unwritable_store_is_an_input_error(tmp_path: Path) -> None:
         resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
         signal.signal(signal.SIGXFSZ, before)
     assert store.names() == frozenset() and names(tmp_path / "runs") == ["store.json"]
+
+
+# -- archives that are larger than they look -----------------------------------------------------------------------
+def header(shape: str, kind: str = "<f8") -> bytes:
+    """The first bytes of an array that states a shape."""
+    text = f"{{'descr': '{kind}', 'fortran_order': False, 'shape': {shape}, }}"
+    line = text.ljust(117) + chr(10)
+    return b"\x93NUMPY" + bytes([1, 0]) + len(line).to_bytes(2, "little") + line.encode()
+
+
+def archive(path: Path, *, packed: bool, **members: bytes) -> Path:
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED if packed else zipfile.ZIP_STORED) as file:
+        for name, content in members.items():
+            file.writestr(f"{name}.npy", content)
+    return path
+
+
+def readers(path: Path) -> list[Callable[[], object]]:
+    """All doors that read archives of arrays, for one file."""
+    folder = path.parent / "runs"
+    store = open_store(folder, "abc")
+    (folder / "part.npz").write_bytes(path.read_bytes())
+    field = lh.GeneratorField(lh.adjoint(lh.so(3)), ["-m0", "-m1/2", "-m2/3"])
+    return [
+        lambda: lh.Solution.load(path),
+        lambda: store.load("part"),
+        lambda: lh.integrate(field, (0, 1), [0.6, 0.0, 0.8], dt=0.5, checkpoint=path),
+    ]
+
+
+@pytest.mark.parametrize(("shape", "kind"), [
+    ("(1000000000000000,)", "<f8"), ("(1000000000000000,)", "<U0"), ("(-1,)", "<f8"), ("(3,)", "<f8"),
+    ("(100000, 10000000000)", "|u1"),
+])  # fmt: skip
+def test_a_header_that_states_another_size_is_damage(shape: str, kind: str, tmp_path: Path) -> None:
+    content = header(shape, kind) + bytes(16)
+    for packed in (False, True):
+        for read in readers(archive(tmp_path / "run.npz", packed=packed, y=content)):
+            with pytest.raises(FormatError, match=r"(run|part)\.npz"):
+                read()
+
+
+def test_what_unpacks_to_more_than_the_limit_is_refused_before_it_is_unpacked(tmp_path: Path) -> None:
+    size = 80_000_000  # more than the limit of 64 MiB
+    path = archive(tmp_path / "run.npz", packed=True, y=header(f"({size},)", "|u1") + bytes(size))
+    assert path.stat().st_size < 100_000
+    for read in readers(path):
+        tracemalloc.start()
+        with pytest.raises(LimitError, match="file_bytes"):
+            read()
+        assert tracemalloc.get_traced_memory()[1] < 10_000_000
+        tracemalloc.stop()
+    with lh.limits(file_bytes=2 * size), pytest.raises(FormatError, match="its format is ''"):
+        lh.Solution.load(path)
+
+
+def test_an_array_before_an_archive_is_not_read(tmp_path: Path) -> None:
+    path = archive(tmp_path / "whole.npz", packed=False, y=header("(2,)") + bytes(16))
+    other = tmp_path / "run.npz"
+    other.write_bytes(header("(1000000000000000,)") + path.read_bytes())
+    with pytest.raises(FormatError, match="its format is ''"):
+        lh.Solution.load(other)
+
+
+def test_large_files_of_the_library_itself_are_read(tmp_path: Path) -> None:
+    """They are not compressed, so that they are as large on disk as in memory."""
+    store = open_store(tmp_path / "runs", "abc")
+    store.save("part", {"y": np.arange(1000.0)}, {})
+    with lh.limits(file_bytes=100):
+        assert store.load("part")[0]["y"][-1] == 999.0

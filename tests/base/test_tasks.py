@@ -3,6 +3,7 @@
 import multiprocessing
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -229,3 +230,15 @@ def test_a_killed_process_takes_nothing_from_its_batch(tmp_path: Path) -> None:
     made = Dispatcher[int, tuple[str, int], int](work.kills_its_worker_once, processes, chunksize=3)
     assert sorted(dispatched(made, [(str(tmp_path), x) for x in range(8)])) == [(x, x) for x in range(8)]
     assert (tmp_path / "killed").exists()
+
+
+def test_a_pool_that_would_fork_a_process_with_jax_is_refused() -> None:
+    jax = pytest.importorskip("jax")
+    jax.numpy.zeros(3).block_until_ready()  # starts its threads
+    fork = partial(ProcessPoolExecutor, 1, mp_context=multiprocessing.get_context("fork"))
+    with fork() as pool:
+        for executor in (pool, fork):
+            with pytest.raises(InputError, match="get_context\\('spawn'\\)"):
+                list(completed(abs, [-1], executor))
+    with processes() as pool:
+        assert list(completed(abs, [-1], pool)) == [(0, 1)]

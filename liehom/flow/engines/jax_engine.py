@@ -17,6 +17,7 @@ from liehom.base.errors import InputError, TraceError
 from liehom.base.pytrees import Leaf, PerTrajectory, leaves, mapped, unwrapped
 from liehom.base.typing import Pytree
 from liehom.flow.action.field import GeneratorField
+from liehom.flow.action.fingerprint import Watch
 from liehom.flow.action.frames import tight_frame
 from liehom.flow.engines.engine import Problem, executed
 from liehom.flow.engines.jax_kernel import FastPath, enabled_x64
@@ -197,6 +198,7 @@ class JaxEngine:
         _register_with_jax()
         self._programs: dict[Hashable, Program] = {}
         self.steps: dict[Hashable, StepOnJax] = {}
+        self._watch: Watch | None = None
 
     def solve(self, problem: Problem) -> Solution:
         """The solution of a problem, with JAX arrays if the start is one."""
@@ -205,6 +207,9 @@ class JaxEngine:
                 return _lattice_of_numpy(self, problem)
             return executed(problem, lambda run: FastPath(run, self.name))
         start: Any = problem.start
+        if self._watch is None or self._watch.changed():
+            self._programs, self.steps = {}, {}
+            self._watch = Watch(problem.bound, start, problem.span[0])
         with enabled_x64() if start.dtype == np.float64 else nullcontext():
             return _Call(self, problem).solution()
 

@@ -15,6 +15,7 @@ import numpy as np
 
 from liehom.base.errors import ConvergenceError, InputError
 from liehom.base.typing import Array, IntegerArray, Pytree
+from liehom.flow.action.fingerprint import Watch
 from liehom.flow.engines.compiled_events import EventSearch
 from liehom.flow.engines.engine import Problem, executed
 from liehom.flow.engines.lanes import (
@@ -64,12 +65,16 @@ class LlvmEngine:
         self._store = CodeStore()
         self._plans: dict[Hashable, Plan] = {}
         self._lattice: LatticeStep | None = None
+        self._watch: Watch | None = None
 
     def __reduce__(self) -> tuple[type[LlvmEngine], tuple[()]]:
         return type(self), ()  # machine code belongs to a process
 
     def solve(self, problem: Problem) -> Solution:
         """The solution of a problem."""
+        if self._watch is None or self._watch.changed():
+            self._store, self._plans, self._lattice = CodeStore(), {}, None
+            self._watch = Watch(problem.bound, problem.start, problem.span[0])
         if problem.field.sites:
             step, self._lattice = self._lattice, None  # its planes serve one call at a time
             if step is None or problem.args is not None:
@@ -90,7 +95,7 @@ class LlvmEngine:
 
     def again(self, t_span: object, y0: object, options: Mapping[str, Any], args: Pytree = None) -> Solution | None:
         """The solution of a call like one before, for other points and args; None if it needs a closer look."""
-        if not self._plans:
+        if not self._plans or self._watch is None or self._watch.changed():
             return None
         key = plan_key(t_span, y0, options, args)
         try:

@@ -19,12 +19,15 @@ from liehom.base.store import open_store
 from liehom.base.tasks import BUFFERSIZE, ExecutorLike, completed
 from liehom.base.typing import Array, IntegerArray, Pytree
 from liehom.flow.action.field import GeneratorField, check_point
+from liehom.flow.action.fingerprint import events_by_name, fingerprint, source_of, stable_repr, values_of
+from liehom.flow.action.space import Action
 from liehom.flow.engines.arguments import EnsembleOptions, least_atol
 from liehom.flow.propagation.integration import integrate
 from liehom.flow.propagation.propagator import ATOL, RTOL, default_step, without_order_warning
+from liehom.flow.run.events import Events
 from liehom.flow.run.options import LOST, TRAJECTORY_MARK, Progress, Span, also_lost, among, overall_status, points_of
 from liehom.flow.run.records import ConservationReport, Report
-from liehom.flow.run.solution import Solution, as_arrays, from_arrays, stable_repr, warn_of_failure
+from liehom.flow.run.solution import Solution, as_arrays, from_arrays, warn_of_failure
 from liehom.flow.steps.step import as_step
 
 # Solutions of the parts of an ensemble merged into one.
@@ -209,20 +212,29 @@ class EnsembleProblem(NamedTuple):
         return field
 
     def fingerprint(self, field: GeneratorField, bounds: list[tuple[int, int]]) -> str:
-        """Digest that distinguishes this problem from others: numbers, strings, psi at the initial points and near."""
-        named = sorted(self.options.keys() - {*ARRAYS, "args"})
-        texts = [f"{name}={_option_text(self.options[name])}" for name in named]
-        numbers = [np.asarray(self.options[name]) for name in ARRAYS if self.options.get(name) is not None]
-        parameters = [self.parameters[name] for name in sorted(self.parameters)]
-        parameters += numbers_of(self.options.get("args"))
-        matrices = [a.to_numpy() for a in field.representation.matrices]
-        first, last = self.ends()
-        lead, ahead = self.start.shape[:-1], 1e-3 * (last - first)
-        here = np.asarray(field.psi(self.start, np.full(lead, first)))
-        near = self.start + ahead * np.asarray(field.vector(self.start, np.full(lead, first)))
-        there = np.asarray(field.psi(near, np.full(lead, first + ahead)))
-        arrays = (np.array([first, last]), self.start, *numbers, *parameters, *matrices, here, there)
-        return digest(repr(texts), repr(bounds), *arrays)
+        """String that distinguishes this problem from others: what was given by name, and values of psi."""
+        options, events = self.options, self.options.get("events")
+        functions = {"psi": source_of(field), "step": options.get("step"), "exponential": options.get("exponential")}
+        texts = [
+            f"{name}={stable_repr(options[name])}" for name in sorted(options.keys() - {*ARRAYS, "args", "events"})
+        ]
+        span = np.array(self.ends())
+        others = {
+            "initial points": digest(self.start),
+            "time span": digest(span),
+            "options": digest(*texts, *(np.asarray(options[name]) for name in ARRAYS if options.get(name) is not None)),
+            "chunk": digest(repr(bounds)),
+            "args": digest(*numbers_of(options.get("args"))),
+            "parameters": digest(*(x for item in sorted(self.parameters.items()) for x in item)),
+            "representation": digest(*(a.to_numpy() for a in field.representation.matrices)),
+        }
+
+        def call() -> str:
+            if events is not None:
+                Events(events, field.args).values(np.full(self.start.shape[:-1], span[0]), self.start)
+            return values_of(Action(field.representation), field, self.start, (span[0], span[1]))
+
+        return fingerprint(functions | events_by_name(events), others, call)
 
 
 def solved(task: EnsembleProblem) -> Solution:
@@ -234,11 +246,12 @@ def solved(task: EnsembleProblem) -> Solution:
 def all_solved(
     problems: Sequence[EnsembleProblem], executor: ExecutorLike, store: str | os.PathLike[str] | None, retries: int = 2
 ) -> list[Solution]:
-    """The solutions of some problems, in their order, computed on an executor and kept in a store if one is given."""
+    """The solutions of problems that differ in dt, in order, computed on an executor and kept in a store if given."""
     names = [f"run-{number:04d}" for number in range(len(problems))]
     kept, solutions = None, dict[int, Solution]()
     if store is not None:
-        kept = open_store(store, digest(repr([problem.fingerprint(problem.made(), []) for problem in problems])))
+        together = problems[0].options | {"dt": [problem.options["dt"] for problem in problems]}
+        kept = open_store(store, problems[0]._replace(options=together).fingerprint(problems[0].made(), []))
         read = {i: kept.restored(name, from_arrays) for i, name in enumerate(names) if name in kept.names()}
         solutions = {i: solution for i, solution in read.items() if solution is not None}
     todo = [i for i in range(len(problems)) if i not in solutions]
@@ -264,16 +277,6 @@ def _rows(args: Pytree, rows: slice) -> Pytree:
         return leaf.value.rows(rows) if isinstance(leaf.value, PerTrajectory) else leaf.value
 
     return mapped(args, taken)
-
-
-def _option_text(value: object) -> str:
-    """String of an option for fingerprints, equal in every process."""
-    if isinstance(value, list | tuple):
-        return repr([_option_text(x) for x in value])
-    if callable(value) and hasattr(value, "__qualname__"):
-        marks = [repr(getattr(value, name, None)) for name in ("terminal", "direction")]
-        return f"{value.__module__}.{value.__qualname__} {marks}"
-    return stable_repr(value)
 
 
 # integrate_ensemble: an ensemble in chunks, each by `integrate`, on any executor and optionally stored on disk. The

@@ -18,6 +18,7 @@ from liehom.base.errors import ConvergenceError
 from liehom.base.pytrees import numbers_of
 from liehom.base.typing import Array, BooleanArray, IntegerArray, Real, Values, ValuesLike
 from liehom.flow.action.field import GeneratorField
+from liehom.flow.action.fingerprint import events_by_name, fingerprint, source_of, stable_repr, values_of
 from liehom.flow.action.space import Action
 from liehom.flow.run import solution as files
 from liehom.flow.run.check import gap_of
@@ -482,9 +483,9 @@ class Run(Automaton):
         """Integrate to the end, with progress and checkpoints; returns the solution."""
         state = self.state
         with Progress(show) as progress:
-            fingerprint = "" if path is None else self._fingerprint()
+            mark = "" if path is None else self._fingerprint()
             if path is not None and path.exists():
-                state.restore(files.load(path, fingerprint))
+                state.restore(files.load(path, mark))
             snapshot, due = state.snapshot(), wall.monotonic() + self.options.checkpoint_every
             try:
                 while state.active.any():
@@ -495,14 +496,14 @@ class Run(Automaton):
                     progress.update(self._fraction)
                     if path is not None and wall.monotonic() >= due:
                         begin = wall.monotonic()
-                        files.save(path, fingerprint, state.arrays())
+                        files.save(path, mark, state.arrays())
                         # a long history takes long to write: at most a tenth of the time goes into it
                         cost = wall.monotonic() - begin
                         due = begin + cost + max(self.options.checkpoint_every, 10 * cost)
             except BaseException:
                 if path is not None:
                     state.rollback(snapshot)
-                    files.save(path, fingerprint, state.arrays())
+                    files.save(path, mark, state.arrays())
                 raise
             progress.update(lambda: 1.0, last=True)
             solution = self._solution()
@@ -511,17 +512,27 @@ class Run(Automaton):
         return solution
 
     def _fingerprint(self) -> str:
-        """Digest that distinguishes this problem from others: numbers, strings, psi at the start and next to it."""
+        """String that distinguishes this problem from others: what was given by name, and values of psi."""
         o, events, field = self.options, self.stops.events, self.field
-        strings = f"{files.stable_repr(self.step)} {self.action.exponential.name} {o.fixed_text()}"
-        strings += "" if events is None else f" {events.directions} {events.terminal}"
-        t, ahead = np.full(self.shape, self.span[0]), 1e-3 * (self.stops.end - self.span[0])
-        here = np.asarray(field.psi(self.start, t))
-        near = self.action.act((ahead * here).astype(self.dtype), self.start)
-        there = np.asarray(field.psi(near, t + ahead))
-        numbers = [np.array(self.span), *(0 if x is None else x for x in (o.dt, o.t_eval)), *numbers_of(field.args)]
-        numbers += [a.to_numpy() for a in field.representation.matrices]
-        return digest(strings, self.start, *numbers, here, near, there, *self.state.event_values)
+        functions = {"psi": source_of(field), "step": self.step, "exponential": self.action.exponential}
+        numbers = [0 if x is None else x for x in (o.dt, o.t_eval)]
+        others = {
+            "initial points": digest(self.start),
+            "time span": digest(np.array(self.span)),
+            "options": digest(f"{stable_repr(self.step)} {self.action.exponential.name} {o.fixed_text()}", *numbers),
+            "args": digest(*numbers_of(field.args)),
+            "representation": digest(*(a.to_numpy() for a in field.representation.matrices)),
+            "events": ""
+            if events is None
+            else digest(f"{events.directions} {events.terminal}", *self.state.event_values),
+        }
+
+        def call() -> str:
+            if events is not None:
+                events.values(self.state.t, self.start)
+            return values_of(self.action, field, self.start, self.span)
+
+        return fingerprint(functions | events_by_name(o.events), others, call)
 
     def _fraction(self) -> float:
         passed = np.min(np.abs(self.state.t - self.span[0]), where=self.state.active, initial=np.inf)

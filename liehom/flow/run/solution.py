@@ -7,7 +7,6 @@ import dataclasses
 import json
 import os
 import pickle
-import re
 import textwrap
 import threading
 import warnings
@@ -19,7 +18,7 @@ from typing import Any, BinaryIO, final
 import numpy as np
 import numpy.typing as npt
 
-from liehom.base.disk import check_target, load_arrays, write_arrays, write_atomically, write_file
+from liehom.base.disk import check_target, differing, load_arrays, write_arrays, write_atomically, write_file
 from liehom.base.errors import ConvergenceError, FormatError, InputError, OrderWarning, ShapeError
 from liehom.base.objects import Displayed
 from liehom.base.typing import Array, IntegerArray
@@ -185,10 +184,10 @@ def save(path: str | os.PathLike[str], fingerprint: str, state: Mapping[str, npt
 def load(path: str | os.PathLike[str], fingerprint: str) -> dict[str, npt.NDArray[Any]]:
     """Arrays of the state in a checkpoint, by name."""
     state, own = load_arrays(path, "checkpoint", CHECKPOINT_FORMAT, "fingerprint")
-    if own != fingerprint:
+    if different := differing(own, fingerprint):
         raise InputError(
-            f"the checkpoint {os.fspath(path)!r} belongs to another problem (field, start, time span, step or options "
-            "differ): delete it, or give another path"
+            f"the checkpoint {os.fspath(path)!r} belongs to another problem ({different} differ): delete it, or give "
+            "another path"
         )
     return state
 
@@ -197,11 +196,6 @@ def remove(path: str | os.PathLike[str]) -> None:
     """Delete a checkpoint, if there is one."""
     with contextlib.suppress(FileNotFoundError):
         os.remove(path)
-
-
-def stable_repr(value: object) -> str:
-    """The repr of a step or an option without addresses, for fingerprints."""
-    return re.sub(" at 0x[0-9a-f]+", "", repr(value))
 
 
 def _not_writable(target: Path, error: Exception) -> InputError:

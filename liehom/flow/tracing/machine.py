@@ -6,7 +6,9 @@ import contextlib
 import ctypes
 import hashlib
 import os
+import stat
 import sys
+import warnings
 from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
@@ -49,6 +51,7 @@ def lanes_per_register() -> int:
 def _host() -> tuple[ModuleType, str, dict[str, bool]]:
     """(llvmlite.binding, a string that stands for this processor, its features)."""
     try:
+        import llvmlite
         import llvmlite.binding as llvm
     except ImportError:
         raise TraceError('engine="llvm" needs llvmlite: pip install llvmlite') from None
@@ -57,7 +60,7 @@ def _host() -> tuple[ModuleType, str, dict[str, bool]]:
     _add_symbols(llvm)
     name, features = llvm.get_host_cpu_name(), llvm.get_host_cpu_features()
     triple = llvm.get_process_triple()
-    return llvm, f"{llvm.llvm_version_info}{name}{features.flatten()}{triple}", dict(features)
+    return llvm, f"{llvmlite.__version__}{llvm.llvm_version_info}{name}{features.flatten()}{triple}", dict(features)
 
 
 def _target_machine(llvm: ModuleType) -> TargetMachine:
@@ -84,10 +87,12 @@ def engine_of(text: str) -> tuple[Engine, bool]:
         return _ENGINES[key], True
     machine = _target_machine(llvm)
     engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), machine)
-    cached = _read(key)
+    folder = _private_cache()
+    cached = None if folder is None else _read(folder / f"{key}.o", key)
     code = _compiled(llvm, machine, text) if cached is None else cached
-    if cached is None:
-        _write(key, code)
+    if cached is None and folder is not None:
+        with contextlib.suppress(OSError):  # it is compiled again next time
+            write_atomically(folder / f"{key}.o", _mark(key, code) + code)
     engine.add_object_file(llvm.ObjectFileRef.from_data(code))
     engine.finalize_object()
     _ENGINES[key] = engine
@@ -111,25 +116,39 @@ def _add_symbols(llvm: ModuleType) -> None:
         llvm.add_symbol(name, ctypes.cast(getattr(library, name), ctypes.c_void_p).value)
 
 
-def _read(key: str) -> bytes | None:
+def _private_cache() -> Path | None:
+    """The folder of cached code, made if it does not exist; None if others may write to it, whose code is not run."""
     folder = cache_directory()
-    if folder is None:
-        return None
     try:
-        content = (folder / f"{key}.o").read_bytes()
+        if folder is None:
+            return None
+        folder.mkdir(parents=True, exist_ok=True, mode=0o700)
+        found = folder.stat()
     except OSError:
         return None
-    digest, code = content[:32], content[32:]
-    return code if hashlib.sha256(code).digest() == digest else None
+    # on Windows, where users have no numbers, profiles are private
+    if hasattr(os, "getuid") and (found.st_uid != os.getuid() or found.st_mode & (stat.S_IWGRP | stat.S_IWOTH)):
+        warnings.warn(
+            f"machine code is not cached in {str(folder)!r}: it belongs to another user, or others may write to it; "
+            "chmod go-w, or set LIEHOM_CACHE_DIR to another folder",
+            stacklevel=2,
+        )
+        return None
+    return folder
 
 
-def _write(key: str, code: bytes) -> None:
-    """Cache the code, by renaming a complete file; if that fails, it is compiled again next time."""
-    folder = cache_directory()
-    if folder is not None:
-        with contextlib.suppress(OSError):
-            folder.mkdir(parents=True, exist_ok=True)
-            write_atomically(folder / f"{key}.o", hashlib.sha256(code).digest() + code)
+def _mark(key: str, code: bytes) -> bytes:
+    """The begin of a cached file: the key, of a text, a processor and versions, and a digest of key and code."""
+    return key.encode() + hashlib.sha256(key.encode() + code).digest()
+
+
+def _read(file: Path, key: str) -> bytes | None:
+    try:
+        content = file.read_bytes()
+    except OSError:
+        return None
+    size = len(_mark(key, b""))
+    return content[size:] if content[:size] == _mark(key, content[size:]) else None
 
 
 PLACES = {name: place for place, name in enumerate(FIELDS)}

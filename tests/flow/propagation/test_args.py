@@ -249,18 +249,14 @@ def late(m: Any, t: Any, args: Any) -> Any:
 
 
 def test_a_checkpoint_of_other_args_is_another_problem(tmp_path: Path) -> None:
-    stops = [0.3]
-
-    def psi(m: Any, t: Any, args: Any) -> Any:
-        if stops and t > stops[0]:
+    def stopping(fraction: float) -> None:
+        if 0 < fraction < 1:
             raise KeyboardInterrupt
-        return late(m, t, args)
 
-    field, path = lh.GeneratorField(RHO, psi), tmp_path / "run.npz"
+    field, path = lh.GeneratorField(RHO, late), tmp_path / "run.npz"
     options: dict[str, Any] = {"step": lh.RKMK("rk4"), "dt": 0.1, "checkpoint": path}
     with pytest.raises(KeyboardInterrupt):
-        lh.integrate(field, (0, 1), START, args={"late": 1.0}, **options)
-    stops.clear()
+        lh.integrate(field, (0, 1), START, args={"late": 1.0}, progress=stopping, **options)
     with pytest.raises(InputError, match="another problem"):
         lh.integrate(field, (0, 1), START, args={"late": 2.0}, **options)
     resumed = lh.integrate(field, (0, 1), START, args={"late": 1.0}, **options)

@@ -1,0 +1,65 @@
+"""The cache of machine code: what is run was compiled from the same text, and nobody else can have written it."""
+
+import os
+import warnings
+from pathlib import Path
+
+import pytest
+
+from liehom.flow.tracing import machine
+from liehom.flow.tracing.array import Traced
+from liehom.flow.tracing.graph import Tape
+from liehom.flow.tracing.loop import StepGraph
+
+pytest.importorskip("llvmlite")
+
+
+def kernel(factor: float) -> machine.Kernel:
+    """A step that multiplies a number, compiled or read as in a new process."""
+    machine._ENGINES.clear()
+    tape = Tape()
+    point = Traced(tape, tape.input(0)) * factor
+    return machine.Kernel(StepGraph([point.entries[()]], None, None, {}, {}), 1)
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setenv("LIEHOM_CACHE_DIR", str(tmp_path / "code"))
+    return tmp_path / "code"
+
+
+def test_a_file_under_the_name_of_another_is_not_run(folder: Path) -> None:
+    assert not kernel(2.0).cached
+    (first,) = folder.iterdir()
+    assert not kernel(3.0).cached
+    (second,) = set(folder.iterdir()) - {first}
+    assert kernel(2.0).cached and kernel(3.0).cached  # a control
+    code = second.read_bytes()
+    second.write_bytes(first.read_bytes())
+    assert not kernel(3.0).cached
+    assert second.read_bytes() == code  # it is written again
+
+
+def test_a_folder_to_which_others_may_write_is_not_used(folder: Path) -> None:
+    assert not kernel(2.0).cached and kernel(2.0).cached
+    assert folder.stat().st_mode & 0o777 == 0o700
+    for mode in (0o770, 0o707):
+        folder.chmod(mode)
+        with pytest.warns(UserWarning, match="others may write to it"):
+            assert not kernel(2.0).cached
+    folder.chmod(0o755)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert kernel(2.0).cached
+
+
+def test_a_folder_of_another_user_is_not_used(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert not kernel(2.0).cached
+    content = {file: file.read_bytes() for file in folder.iterdir()}
+    other = os.getuid() + 1
+    monkeypatch.setattr(os, "getuid", lambda: other)
+    with pytest.warns(UserWarning, match="belongs to another user"):
+        assert not kernel(2.0).cached
+    with pytest.warns(UserWarning, match="belongs to another user"):
+        assert not kernel(4.0).cached
+    assert {file: file.read_bytes() for file in folder.iterdir()} == content
