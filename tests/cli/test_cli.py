@@ -355,7 +355,7 @@ def float_pair(path: Path, turn: float) -> str:
 
 
 @pytest.mark.parametrize(("turn", "full", "says"), [
-    (1.0, True, "full (numerical"), (1e-8, None, "undecided (numerical"), (0.0, False, "not full (numerical"),
+    (1.0, True, "full (numerical"), (1e-9, None, "undecided (numerical"), (0.0, False, "not full (numerical"),
 ])  # fmt: skip
 def test_fullness_of_floats_has_three_answers(tmp_path: Path, turn: float, full: bool | None, says: str) -> None:
     file = float_pair(tmp_path / "pair.json", turn)

@@ -30,7 +30,7 @@ SAMPLES: dict[str, Callable[[], object]] = {
     "NumericallyFull": lambda: lh.decide_fullness(lh.Pair(lh.so(3).over(lh.RR), [[0.0, 0.0, 1.0]])),
     "NumericallyNotFull": lambda: lh.decide_fullness(lh.Pair(lh.abelian(2).over(lh.RR), [])),
     "NumericallyUndecided": lambda: lh.decide_fullness(
-        lh.Pair(lh.LieAlgebra({(0, 1): {2: 1.0}, (0, 2): {1: -1e-8}}, dimension=3), [[1, 0, 0]])
+        lh.Pair(lh.LieAlgebra({(0, 1): {2: 1.0}, (0, 2): {1: -1e-9}}, dimension=3), [[1, 0, 0]])
     ),
     "Certificate": lambda: lh.decide_fullness(lh.pair("so(4)/so(3)")).certificate,
     "Classification": lambda: lh.classify(lh.pair("so(6)/u(3)")),

@@ -244,13 +244,13 @@ class _Branch:
         self.point = point
 
     def _passes(self, series: Array, length: np.floating[Any], way: np.floating[Any]) -> bool:
-        """Whether the velocity of a piece is that of the field, at its end and at looks within the way to the target."""
+        """Whether the velocity of a piece is that of the field, at its end and at looks on the way to the target."""
         here, count = self.times[-1], int(np.ceil(LOOKS * length / way))
         allowed = ALLOWED_RESIDUAL * self.tolerance * np.linalg.norm(series[..., 0], axis=-1)
         times = np.abs(here) * np.linalg.norm(2 * series[..., min(2, self.order)], axis=-1)
         rounded = 8 * np.finfo(here.dtype).eps * (np.linalg.norm(series[..., 1], axis=-1) + times)
         for j in range(count):
-            s = self.direction * length * (1 if j == 0 else (count - j - OFFSET) / (count - OFFSET))
+            s: Any = self.direction * length * (1 if j == 0 else (count - j - OFFSET) / (count - OFFSET))
             t = np.full(self.point.shape[:-1], here + s)
             lack = np.linalg.norm(_horner(series, s, 1) - self.field.vector(_horner(series, s, 0), t), axis=-1)
             if not bool((length * np.maximum(lack - rounded, 0) <= allowed).all()):

@@ -266,7 +266,8 @@ class Plan:
         elif self.steps is None:
             steps = int(steps[0])
         made: Any = self.steps if self.steps is not None else state[self.tries, :lanes]
-        made, report = made * (self.kernel.graph.calls or 0), self.report
+        graph, report = self.kernel.graph, self.report
+        made = made * (graph.calls or 0) + (graph.first is not None)
         if self.checks is not None:
             looks, cuts = state[self.checks, :lanes]
             made, total, cut = made + looks, int(looks.sum()), int(cuts.sum())

@@ -306,7 +306,7 @@ class ConservingStep(LocalStep):
         return self.base.size(limits)
 
     def look(self, h: Values, time: Values) -> tuple[Values, Values]:
-        return self.base.look(h, time)
+        return self.base.look(h, time) if self.base.trajectory else super().look(h, time)
 
     def estimate(self, h: Values) -> Values:
         return self.base.estimate(h)

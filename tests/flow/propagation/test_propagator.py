@@ -87,8 +87,8 @@ def test_a_lost_order_is_warned_of_where_the_call_is() -> None:
     field = lh.GeneratorField(lh.defining(lh.so(2, 1)), ["3/4 + 3*m0/4", "1/2", "-3*m1/4 - m2/4"])
     step = lh.Corrected(lh.Euler(), 4)
     with pytest.warns(OrderWarning) as caught:
-        lh.Propagator(field, step)((0, 2), [0.6, 0.8, 0.0], dt=0.05)
-        lh.integrate(field, (0, 2), [0.6, 0.8, 0.0], step=step, dt=0.05)
+        lh.Propagator(field, step)((0, 2), [0.6, 0.8, 0.0], dt=0.03)
+        lh.integrate(field, (0, 2), [0.6, 0.8, 0.0], step=step, dt=0.03)
     assert [w.filename for w in caught] == [__file__] * 2
 
 
@@ -98,7 +98,7 @@ def test_a_call_that_an_engine_repeats_warns_of_where_it_is() -> None:
     propagator = lh.Propagator(field, lh.Corrected(lh.Euler(), 4), engine="llvm")
     with pytest.warns(OrderWarning) as caught:
         for _ in range(2):
-            propagator((0, 2), [0.6, 0.8, 0.0], dt=0.05)
+            propagator((0, 2), [0.6, 0.8, 0.0], dt=0.03)
     assert [w.filename for w in caught] == [__file__] * 2
 
 

@@ -79,6 +79,7 @@ def test_the_default_step_sees_features(name: str, engine: str) -> None:
         assert solution.report.looks >= solution.n_steps
 
 
+@pytest.mark.filterwarnings("ignore:status -1")
 def test_without_looks_they_are_missed_and_the_report_says_so() -> None:
     missed = set()
     for name in FEATURES:
@@ -186,6 +187,7 @@ def test_a_derivative_that_is_not_finite_at_the_start_is_stepped_over(power: flo
         assert np.linalg.norm(solution.y[:, -1] - [0, np.cos(turned), np.sin(turned)]) < 1e-4
 
 
+@pytest.mark.filterwarnings("ignore:status -1")
 def test_psi_that_is_not_finite_ends_the_run_where_it_is() -> None:
     solution = lh.integrate(along(lambda t: 1 / (5 - t)), (0, 10), START)
     assert not solution.success and 4.9 < solution.t[-1] <= 5

@@ -131,9 +131,9 @@ def test_jax_arrays_notice_what_numpy_notices() -> None:
     jax = pytest.importorskip("jax")
     with jax.enable_x64(True):
         starts = jax.numpy.array([AWAY, CROSSING])
-        sol, caught = quietly(FIELD, (0, 2), starts, step=STEP, dt=0.05, engine="jax")
+        sol, caught = quietly(FIELD, (0, 2), starts, step=STEP, dt=0.03, engine="jax")
         assert np.asarray(sol.statuses).tolist() == [KEPT, LOST] and len(caught) == 1 and not sol.success
-        plain = quietly(FIELD, (0, 2), np.asarray(starts), step=STEP, dt=0.05).sol
+        plain = quietly(FIELD, (0, 2), np.asarray(starts), step=STEP, dt=0.03).sol
         assert sol.message == plain.message and sol.report.near_steps == plain.report.near_steps > 0
         assert abs(sol.report.unkept_from - plain.report.unkept_from) < 1e-12 and sol.report.order == 1
 
@@ -143,9 +143,9 @@ def test_one_jax_array_and_traced_ones_have_statuses() -> None:
     jax = pytest.importorskip("jax")
     with jax.enable_x64(True):
         starts = jax.numpy.array([AWAY, CROSSING])
-        one, none = quietly(FIELD, (0, 2), starts[0], step=STEP, dt=0.05, engine="jax")
+        one, none = quietly(FIELD, (0, 2), starts[0], step=STEP, dt=0.03, engine="jax")
         assert one.status == one.statuses == KEPT and one.success and not none
-        traced = jax.jit(lambda m: lh.integrate(FIELD, (0, 2), m, step=STEP, dt=0.05, engine="jax").statuses)
+        traced = jax.jit(lambda m: lh.integrate(FIELD, (0, 2), m, step=STEP, dt=0.03, engine="jax").statuses)
         assert np.asarray(traced(starts)).tolist() == [KEPT, LOST]
 
 
