@@ -28,7 +28,9 @@ def test_a_mutant_changes_its_function_alone(module: str) -> None:
         name = mutant.function.partition(":")[2]
         assert changed, mutant
         # the body of a class holds the codes of its methods
-        assert all(f"{name}.".startswith(f"{other}.") or other.startswith(f"{name}.<locals>") for other in changed), mutant
+        assert all(f"{name}.".startswith(f"{other}.") or other.startswith(f"{name}.<locals>") for other in changed), (
+            mutant
+        )
     assert [m.key for m in mutants(module)] == [m.key for m in found]
 
 

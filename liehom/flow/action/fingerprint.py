@@ -60,7 +60,7 @@ def fingerprint(functions: Mapping[str, Part], others: Mapping[str, str], call: 
 
 def _digests(functions: Mapping[str, Part]) -> dict[str, str]:
     seen: dict[int, Part] = {}
-    walks = (_walk(label, lambda x=x: x, seen) for label, x in functions.items())
+    walks = (_walk(label, partial(functions.__getitem__, label), seen) for label in functions)
     return {label: _content(value, {}) for walk in walks for label, _, value, is_leaf in walk if is_leaf}
 
 
@@ -149,7 +149,8 @@ def _rows_of_function(f: FunctionType) -> list[tuple[str, Read]]:
         return [("function", lambda: _with_version(f"{f.__module__}.{f.__qualname__}")), *rows]
     names, imported, attributes = _names(f.__code__)
     found: list[tuple[str, Read]] = [(name, partial(f.__globals__.get, name)) for name in names]
-    for name, read in [*found, *((name, partial(sys.modules.get, name)) for name in imported)]:
+    found += [(name, partial(sys.modules.get, name)) for name in imported]
+    for name, read in found:
         module = read()
         if isinstance(module, ModuleType) and not _is_installed(module.__name__):
             rows += [(f"{name}.{a}", partial(getattr, module, a, None)) for a in attributes if hasattr(module, a)]
@@ -259,7 +260,7 @@ LARGEST = 4096  # bytes of a content that is compared in every call; larger arra
 class Watch:
     """The parts of the psi from which code was compiled, and one value of it, compared in later calls."""
 
-    def __init__(self, field: GeneratorField, start: Values, t: Real) -> None:
+    def __init__(self, field: GeneratorField, start: Values, t: Real | np.floating[Any]) -> None:
         source = source_of(field)
         rows = [(read, x, *_looked(x, is_leaf)) for _, read, x, is_leaf in _walk("", lambda: source, {})]
         self._read: Read = bytes  # returns the value

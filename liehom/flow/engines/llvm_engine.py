@@ -365,7 +365,8 @@ class _CompiledRun:
         first = int(done.min()) if count else 0
         return LaneSteps(
             m=state[:n, :count], t=reached, taken=taken, going=alive > 0, done=alive < 0,
-            calls=calls_of(kernel, row, tries) + (np.isinf(sizes) if graph.first is not None else 0), records=records_of(kernel, row),
+            calls=calls_of(kernel, row, tries) + (graph.first is not None and np.isinf(sizes)),
+            records=records_of(kernel, row),
             outputs=np.arange(first, int(until.max(initial=first))),
             points=out[first : int(until.max(initial=first)), :, :count], until=until,
             path=None if path is None else moved_rows(path[..., :count], n),
