@@ -10,10 +10,10 @@ PACKAGE = Path(liehom.__file__).resolve().parent
 WEIGHTS: tuple[tuple[int, int, int, str], ...] = (
     (82473, 42777, 280, "two halves with one door, for everybody who reads the code"),
     (
-        84238,
+        84243,
         43904,
         284,
-        "the check of adaptive steps and one rule for the same psi, for everybody who integrates a pulse or resumes a run; "
+        "the check of adaptive steps and one rule for the same psi, for everybody who integrates pulses or resumes runs; "
         "closures of Pauli sums, for quantum control; bounds for measured data; names and matrices that people write",
     ),
 )
