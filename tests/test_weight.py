@@ -13,7 +13,7 @@ WEIGHTS: tuple[tuple[int, int, int, str], ...] = (
         84243,
         43904,
         284,
-        "the check of adaptive steps and one rule for the same psi, for everybody who integrates pulses or resumes runs; "
+        "the check of adaptive steps and one rule for the same psi, for those who integrate pulses or resume runs; "
         "closures of Pauli sums, for quantum control; bounds for measured data; names and matrices that people write",
     ),
 )

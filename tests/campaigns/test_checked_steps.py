@@ -8,15 +8,11 @@ import pytest
 from scipy.linalg import expm
 from scipy.special import erf
 
-from liehom.flow.engines.arguments import OPTIONS
 from tests.campaigns.checked_fields import SPAN, Group, groups
 from tests.campaigns.checked_steps import RTOLS, References, allowed, is_wrong, key, main, reference, rows, summary
 
 GROUPS = {(group.name, group.space): group for group in groups(2031)}
 REFERENCES = References(None)
-UNCHECKED = pytest.mark.xfail(
-    "looks" not in OPTIONS, strict=True, reason="adaptive steps do not look at psi before they are taken"
-)
 
 
 def run(group: Group, step: str, rtol: float) -> list[dict[str, object]]:
@@ -30,7 +26,6 @@ JUMPS = [
 ]  # fmt: skip
 
 
-@UNCHECKED
 @pytest.mark.parametrize(("name", "step", "rtol"), JUMPS)
 def test_features_that_unchecked_steps_jump_over_are_seen(name: str, step: str, rtol: float) -> None:
     (row,) = run(GROUPS[name, "sphere"], step, rtol)

@@ -2,8 +2,8 @@
 
 A function is known by its code (bytecode, constants, nested functions), its defaults, its closure, and the globals that
 it names: numbers, arrays by content, functions and objects likewise, installed modules by name and version. A part that
-a call of psi changes, such as a counter, is its state and is not compared. What has no content, such as an open file or
-a function in C, shows in the values of psi only.
+a call of psi changes, such as a counter, is its state and is not compared. An open file or
+a function in C has no content, and shows in the values of psi only.
 """
 
 from __future__ import annotations
@@ -91,7 +91,7 @@ def _content(value: Part, seen: dict[int, tuple[Part, str]]) -> str:
 
 
 def _opened(x: Part, seen: dict[int, tuple[Part, str]]) -> tuple[str, list[Part]]:
-    """What a value is, and what is inside of it."""
+    """A digest of the kind or the content of a value, and its parts."""
     if isinstance(x, np.ndarray | np.generic) and not x.dtype.hasobject:
         return digest(x), []
     if type(x) is list or type(x) is tuple:
@@ -289,7 +289,7 @@ class Watch:
 
 
 def source_of(field: GeneratorField) -> Part:
-    """What was given as psi or as a vector field."""
+    """The function or the expressions given as psi or as a vector field."""
     source: Any = field.source
     while isinstance(source, Components | LeastNorm):
         source = source.components if isinstance(source, LeastNorm) else source._source

@@ -138,7 +138,7 @@ def _private_cache() -> Path | None:
 
 
 def _mark(key: str, code: bytes) -> bytes:
-    """The begin of a cached file: the key, of a text, a processor and versions, and a digest of key and code."""
+    """The begin of a cached file: the key, of assembly, processor and versions, and a digest of key and code."""
     return key.encode() + hashlib.sha256(key.encode() + code).digest()
 
 
