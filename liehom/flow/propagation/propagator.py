@@ -211,9 +211,10 @@ class Propagator:
 
     Notes
     -----
-    `integrate` makes a propagator and calls it once. A propagator that is kept promises that psi is the same function
-    in all calls, so that its engine traces and compiles the step once. `args` hold the numbers that change from call to
-    call.
+    `integrate` makes a propagator and calls it once. The engines "llvm" and "jax" trace and compile the step in the
+    first call. Later calls compare the code of psi, its closure and the globals that it names, and one value of psi,
+    and compile again if one of them has changed. They notice no other change. `args` hold the numbers that change from
+    call to call.
 
     Examples
     --------
