@@ -10,8 +10,8 @@ PACKAGE = Path(liehom.__file__).resolve().parent
 WEIGHTS: tuple[tuple[int, int, int, str], ...] = (
     (82473, 42777, 280, "two halves with one door, for everybody who reads the code"),
     (
-        84243,
-        43904,
+        84245,
+        43905,
         284,
         "the check of adaptive steps and one rule for the same psi, for those who integrate pulses or resume runs; "
         "closures of Pauli sums, for quantum control; bounds for measured data; names and matrices that people write",

@@ -35,7 +35,7 @@ class Coefficients(NamedTuple):
     b: SparseRow
     c: tuple[Any, ...]
     difference: SparseRow
-    widest_gap: float  # between the nodes of the stages on which step and estimate depend, in units of the step
+    widest_gap: float = 1.0  # between the nodes of the stages on which step and estimate depend, in units of the step
 
 
 @final
@@ -118,9 +118,11 @@ class RKMK(OneExponential):
         if kind not in self._floating:
             a, b, c, embedded = self.tableau.to_numpy(np.dtype(kind))
             number = np.longdouble if kind == "g" else float
-            self._floating[kind] = _coefficients(
+            numbers = _coefficients(
                 [[number(x) for x in row] for row in (*a, b, c, b if embedded is None else embedded)]
             )
+            gap = widest_gap([numbers.c[i] for i, _ in (*numbers.b, *numbers.difference)])
+            self._floating[kind] = numbers._replace(widest_gap=gap)
         return self._floating[kind]
 
     def generator(self, action: Action, psi: Generator, m: Values, t: Values, h: Values) -> Values:
@@ -279,8 +281,7 @@ def _coefficients(rows: Sequence[Sequence[Any]]) -> Coefficients:
     """Coefficients from the rows of a, and b, c and the embedded weights as last rows."""
     *a, b, c, embedded = rows
     weights, difference = sparse_row(b), sparse_row([x - y for x, y in zip(b, embedded, strict=True)])
-    gap = widest_gap([c[i] for i, _ in (*weights, *difference)])
-    return Coefficients(tuple(sparse_row(row) for row in a), weights, tuple(c), difference, gap)
+    return Coefficients(tuple(sparse_row(row) for row in a), weights, tuple(c), difference)
 
 
 def sparse_row(row: Sequence[Any]) -> SparseRow:

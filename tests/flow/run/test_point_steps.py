@@ -74,22 +74,18 @@ def test_dense_output_and_events_take_points() -> None:
 
 
 def test_an_interrupted_run_goes_on(tmp_path: Path) -> None:
-    path, late = tmp_path / "run.npz", [np.inf]
-
-    def psi(m: Any, t: Any) -> Any:
-        if np.any(t > late[0]):
-            raise KeyboardInterrupt
-        return 1 + m[..., :1] / 2
+    path = tmp_path / "run.npz"
 
     def run(**options: Any) -> Any:
-        field = lh.GeneratorField(FIELD.representation, psi)
-        return lh.integrate(field, (0, 2), START, step=Rotation(), dt=0.05, **options)
+        return lh.integrate(FIELD, (0, 2), START, step=Rotation(), dt=0.05, **options)
 
-    whole, late[0] = run(), 0.8
+    def interrupted(fraction: float) -> None:
+        raise KeyboardInterrupt
+
+    whole = run()
     with pytest.raises(KeyboardInterrupt):
-        run(checkpoint=path)
+        run(checkpoint=path, progress=interrupted)
     assert path.exists()
-    late[0] = np.inf
     again = run(checkpoint=path)
     assert np.array_equal(again.y, whole.y) and np.array_equal(again.t, whole.t)
 
