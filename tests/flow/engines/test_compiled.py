@@ -81,6 +81,7 @@ def test_every_space_agrees(name: str, step: str) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.filterwarnings("ignore::liehom.OrderWarning")
 @pytest.mark.parametrize("clock", ["corrected", "nominal"])
 @pytest.mark.parametrize("step", STEPS)
 @pytest.mark.parametrize("name", [*SPACES, "Gr(2,4)", "SU(3)/T", "two coupled spins"])
