@@ -166,7 +166,7 @@ def test_messages_are_wrapped_between_words_on_a_terminal(
     assert guard.say(message, 2) == 2
     assert capsys.readouterr().err == f"liehom: {message}\n"  # in a pipe one line
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True, raising=False)
-    monkeypatch.setattr("shutil.get_terminal_size", lambda: os.terminal_size((width, 24)))
+    monkeypatch.setattr("shutil.get_terminal_size", lambda fallback=(80, 24): os.terminal_size((width, 24)))
     guard.say(message, 2)
     lines = capsys.readouterr().err.splitlines()
     assert all(len(line) < width for line in lines)
