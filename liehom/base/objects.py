@@ -11,13 +11,18 @@ from typing import Any, cast
 
 from liehom.base.errors import InputError
 
+MOST_AXES = 64  # of an array of numpy
+
 
 def refuse_masked(what: str, value: object) -> None:
     """Raise `InputError` if a value, or an entry of a list, is a masked array of numpy, whose mask would be lost."""
-    for x in value if isinstance(value, list | tuple) else ():
-        refuse_masked(what, x)
-    if hasattr(value, "filled") and hasattr(value, "mask"):
-        raise InputError(f"{what} is a masked array, and a masked entry has no number: fill it, or leave it out")
+    level, depth = [value], 0
+    while level:
+        if any(hasattr(x, "filled") and hasattr(x, "mask") for x in level):
+            raise InputError(f"{what} is a masked array, and a masked entry has no number: fill it, or leave it out")
+        level, depth = [y for x in level if isinstance(x, list | tuple) for y in x], depth + 1
+        if depth > MOST_AXES:
+            raise InputError(f"{what} is a list in lists, more than {MOST_AXES} deep: give an array of numbers")
 
 
 # Immutable: base of the classes whose public attributes are set once, by their constructor.

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from liehom.base.disk import check_target, write_file
-from liehom.base.errors import FormatError, InputError
+from liehom.base.errors import FormatError, InputError, displayed
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -183,7 +183,7 @@ def _is_dark() -> bool:
 def figure_of(axes: Axes) -> Figure:
     """Figure that the axes of the caller belong to."""
     if not isinstance(axes, matplotlib_module("axes").Axes):
-        raise InputError(f"expected axes of matplotlib, got {axes!r}")
+        raise InputError(f"expected axes of matplotlib, got {displayed(axes)}")
     return axes.figure.figure  # of axes in a subfigure, the figure that has all of them
 
 

@@ -117,7 +117,7 @@ def _named(
     else:
         chosen = list(solutions) if isinstance(solutions, Sequence) else []
     if not chosen or not all(isinstance(solution, Solution) for solution in chosen):
-        raise InputError(f"expected solutions as liehom.integrate returns them, got {pairs!r}")
+        raise InputError(f"expected solutions as liehom.integrate returns them, got {displayed(pairs)}")
     if labels is not None and not isinstance(labels, Sequence):
         raise InputError(f"labels are {displayed(labels)}, expected one string for each solution")
     names = [solution.report.step for solution in chosen] if labels is None else [str(label) for label in labels]

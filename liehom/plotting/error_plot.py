@@ -7,7 +7,7 @@ import os
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from liehom.base.errors import InputError
+from liehom.base.errors import InputError, displayed
 from liehom.flow.convergence.costs import WorkPrecisionRow, WorkPrecisionTable
 from liehom.flow.convergence.orders import ConvergenceTable
 from liehom.plotting.canvas import (
@@ -96,7 +96,7 @@ def plot_convergence(
     """
     chosen = [tables] if isinstance(tables, ConvergenceTable) else list(tables)
     if not chosen or not all(isinstance(table, ConvergenceTable) for table in chosen):
-        raise InputError(f"expected tables as liehom.observed_order returns them, got {tables!r}")
+        raise InputError(f"expected tables as liehom.observed_order returns them, got {displayed(tables)}")
     names = [table.step for table in chosen] if labels is None else [str(label) for label in labels]
     if len(names) != len(chosen):
         raise InputError(f"there are {len(chosen)} tables and {len(names)} labels")
@@ -273,7 +273,7 @@ def plot_work_precision(
     >>> ax = plot_work_precision(table, against="calls")  # doctest: +SKIP
     """
     if not isinstance(table, WorkPrecisionTable):
-        raise InputError(f"expected a table as liehom.work_precision returns it, got {table!r}")
+        raise InputError(f"expected a table as liehom.work_precision returns it, got {displayed(table)}")
     if not isinstance(against, str) or against not in COSTS:
         raise InputError(f"against is {against!r}, expected one of {', '.join(map(repr, COSTS))}")
     if error not in ("trajectory", "orbit"):

@@ -72,7 +72,7 @@ def real_numbers(value: npt.ArrayLike, what: str) -> Array:
 def steps_of(solution: Solution) -> Curves:
     """The points of the steps of the first trajectories."""
     if not isinstance(solution, Solution):
-        raise InputError(f"expected a solution as liehom.integrate returns it, got {solution!r}")
+        raise InputError(f"expected a solution as liehom.integrate returns it, got {displayed(solution)}")
     y = np.asarray(solution.y, dtype=float)
     if not y.size:
         raise InputError("the solution has no point to draw: its ensemble or its t_eval is empty")

@@ -9,7 +9,7 @@ from typing import Any, TypeAlias, final, overload
 import numpy as np
 import numpy.typing as npt
 
-from liehom.base.errors import InputError, ShapeError
+from liehom.base.errors import InputError, ShapeError, displayed
 from liehom.base.typing import Array, IntegerArray, Real, ScalarLike, Values
 from liehom.exact.algebra.core.subalgebra import Subalgebra
 from liehom.exact.algebra.linear.closure import square_matrices
@@ -63,7 +63,7 @@ class SymmetricMatrices:
 
     def __init__(self, k: int) -> None:
         if isinstance(k, bool) or not isinstance(k, int | np.integer) or k < 2:
-            raise InputError(f"the size of the matrices is an integer at least 2, got {k!r}")
+            raise InputError(f"the size of the matrices is an integer at least 2, got {displayed(k)}")
         self.k: int = int(k)
         self.representation: Representation = sym_conjugation(self.k)
         # standard basis of so(k): for i < j the matrix with entry 1 at (j, i)
@@ -423,7 +423,7 @@ def _space(matrix: npt.ArrayLike) -> tuple[SymmetricMatrices, npt.NDArray[Any]]:
     if array.ndim < 2 or array.shape[-1] != array.shape[-2] or array.shape[-1] < 2:
         raise ShapeError(f"expected square matrices of size at least 2, got shape {array.shape}")
     if array.dtype.kind not in "iuf" or not bool(np.isfinite(array).all()):
-        raise InputError(f"expected a matrix of finite real numbers, got {array!r}")
+        raise InputError(f"expected a matrix of finite real numbers, got {displayed(array)}")
     return SymmetricMatrices(array.shape[-1]), array
 
 

@@ -10,7 +10,7 @@ from typing import Any, final
 import numpy as np
 import numpy.typing as npt
 
-from liehom.base.errors import ConvergenceError, InputError, ShapeError
+from liehom.base.errors import ConvergenceError, InputError, ShapeError, displayed
 from liehom.base.typing import Array, ScalarLike, Values
 from liehom.exact.algebra.constructions.classical import so
 from liehom.exact.representations.constructions import adjoint
@@ -348,7 +348,7 @@ class RigidBody:
         True
         """
         if branch not in (1, -1):
-            raise InputError(f"the branch of a separatrix is 1 or -1, got {branch!r}")
+            raise InputError(f"the branch of a separatrix is 1 or -1, got {displayed(branch)}")
         a1, a2, a3 = self._gaps(np.float64)
         if min(a1, a3) <= 0:
             raise InputError(

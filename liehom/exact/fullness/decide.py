@@ -82,7 +82,7 @@ def decide_fullness(pair: Pair, *, seed: int = 0, progress: Progress | None = No
     False
     """
     if not isinstance(pair, Pair):
-        raise InputError(f"expected a Pair, got {pair!r}; a name is read by liehom.pair, a file by liehom.load")
+        raise InputError(f"expected a Pair, got {displayed(pair)}; liehom.pair reads names, liehom.load files")
     LOG.debug("decide %r: dim g/h = %d", pair, pair.dimension)
     verdict = _verdict(pair, seed, progress)
     LOG.debug("verdict: %s", verdict)
@@ -261,9 +261,7 @@ def classify(pair: Pair, verdict: Verdict | None = None) -> Classification:
     liehom.base.errors.NotFullError: only full pairs are classified, and this one is not full: the isotropy ...
     """
     if not isinstance(pair, Pair):
-        raise InputError(
-            f"expected a Pair, got {displayed(pair)}; a name is read by liehom.pair, a file by liehom.load"
-        )
+        raise InputError(f"expected a Pair, got {displayed(pair)}; liehom.pair reads names, liehom.load files")
     if not isinstance(pair.field, ExactField):
         raise UndecidedError(
             f"only exact pairs are classified, and this one is over {pair.field.name}: make it exact by "

@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from liehom.base.budget import in_time
-from liehom.base.errors import InputError, ShapeError, UndecidedError
+from liehom.base.errors import InputError, ShapeError, UndecidedError, displayed
 from liehom.base.typing import Array, IntegerArray, Values, VectorLike
 from liehom.exact.representations.core.pair import Pair
 from liehom.exact.scalars.exact_field import ExactMatrix
@@ -244,7 +244,7 @@ def range_condition(pair: Pair, psi: VectorLike | None = None) -> RangeCondition
     <range condition: fails generically, rank 1 of 2>
     """
     if not isinstance(pair, Pair):
-        raise InputError(f"expected a Pair, got {pair!r}; a name is read by liehom.pair, a file by liehom.load")
+        raise InputError(f"expected a Pair, got {displayed(pair)}; liehom.pair reads names, liehom.load files")
     if psi is not None:
         return _at(pair, pair.algebra.row(psi), generic=False)
     if pair.dimension == 0:

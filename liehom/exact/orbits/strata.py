@@ -9,7 +9,7 @@ from itertools import combinations
 from math import comb
 from typing import Any, TypeVar, final
 
-from liehom.base.errors import CertificateError, InputError
+from liehom.base.errors import CertificateError, InputError, displayed
 from liehom.base.objects import Displayed
 from liehom.exact.algebra.constructions.classical import sl, so
 from liehom.exact.algebra.constructions.sums import direct_sum
@@ -282,7 +282,7 @@ def ordered(strata: list[Stratum]) -> list[Stratum]:
 def require_size(k: object, least: int = 1, what: str = "size of the matrices") -> int:
     """The size of matrices or degree of forms, an integer at least `least`; `InputError` otherwise."""
     if isinstance(k, bool) or not isinstance(k, int) or k < least:
-        raise InputError(f"the {what} is an integer at least {least}, got {k!r}")
+        raise InputError(f"the {what} is an integer at least {least}, got {displayed(k)}")
     return k
 
 

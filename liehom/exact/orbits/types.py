@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Literal, final
 
-from liehom.base.errors import InputError
+from liehom.base.errors import InputError, displayed
 from liehom.base.typing import VectorLike
 from liehom.exact.algebra.core.lie_algebra import LieAlgebra
 from liehom.exact.algebra.core.subalgebra import Subalgebra
@@ -41,7 +41,7 @@ def structure_name(algebra: LieAlgebra | Subalgebra) -> str:
     """
     own = algebra.as_algebra() if isinstance(algebra, Subalgebra) else algebra
     if not isinstance(own, LieAlgebra):
-        raise InputError(f"expected a LieAlgebra or a Subalgebra, got {own!r}")
+        raise InputError(f"expected a LieAlgebra or a Subalgebra, got {displayed(own)}")
     if own.dimension == 0:
         return "0"
     if own.is_abelian():

@@ -15,7 +15,7 @@ from typing import Any, Generic, TypeVar, cast, final, overload
 
 import numpy as np
 
-from liehom.base.errors import InputError
+from liehom.base.errors import InputError, displayed
 from liehom.base.typing import Array
 from liehom.exact.algebra.core.lie_algebra import LieAlgebra
 from liehom.exact.representations.core.pair import Pair
@@ -94,9 +94,9 @@ def rationalize(
     (['1/10', '-3/10', '1/3'], True, 'so(3)')
     """
     if not isinstance(floating, (LieAlgebra, Pair, Representation)):
-        raise InputError(f"expected a LieAlgebra, a Pair or a Representation, got {floating!r}")
+        raise InputError(f"expected a LieAlgebra, a Pair or a Representation, got {displayed(floating)}")
     if isinstance(max_denominator, bool) or not isinstance(max_denominator, (int, np.integer)) or max_denominator < 1:
-        raise InputError(f"max_denominator is a positive integer, got {max_denominator!r}")
+        raise InputError(f"max_denominator is a positive integer, got {displayed(max_denominator)}")
     if floating.field.exact:
         return Rationalization(cast(Any, floating), 0.0)
     rounding = _Rounding(int(max_denominator))

@@ -11,7 +11,7 @@ import flint
 import numpy as np
 import numpy.typing as npt
 
-from liehom.base.errors import InputError, InternalError, SingularError
+from liehom.base.errors import InputError, InternalError, SingularError, displayed
 from liehom.exact.scalars.exact_field import ExactMatrix
 from liehom.exact.scalars.polynomial import Polynomial, horner
 from liehom.exact.scalars.rational import QQ, working_precision
@@ -242,7 +242,7 @@ def complex_conjugation(f: Polynomial) -> Polynomial | None:
     """The c over QQ with c(r) = conj(r) for all complex roots r of f, or None; c = t for a totally real field."""
     coefficients = [QQ.convert(c) for c in f.coefficients] if f.field is QQ else []
     if f.leading != 1 or any(c.q != 1 for c in coefficients) or not coefficients:
-        raise InputError(f"conjugation is decided for monic polynomials with integer coefficients; got {f!r}")
+        raise InputError(f"conjugation is decided for monic polynomials with integer coefficients; got {displayed(f)}")
     integral = flint.fmpz_poly([int(c.p) for c in coefficients])
     discriminant = int(integral.discriminant())
     bits = EXTRA_BITS + discriminant.bit_length()

@@ -380,7 +380,7 @@ def _task(pair: str | Pair | Recipe, seed: int, verify: bool, facts: bool = Fals
     if isinstance(pair, Recipe):
         return _Task(_key(f"{pair.family}: {pair.name} = {pair.key}"), pair, seed, verify, facts)
     if not isinstance(pair, Pair):
-        raise InputError(f"expected a Pair, a Recipe or the name of a pair, got {pair!r}")
+        raise InputError(f"expected a Pair, a Recipe or the name of a pair, got {displayed(pair)}")
     table, field = pair.algebra.table, pair.field
     places = [table.i.tolist(), table.j.tolist(), table.k.tolist()]
     numbers = [*places, [[str(x) for x in p] for p in table.parts], table.den]

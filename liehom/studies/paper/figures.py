@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
-from liehom.base.errors import InputError
+from liehom.base.errors import InputError, displayed
 from liehom.studies.paper.efficiency import figure6, figure7
 from liehom.studies.paper.energy_errors import figure3, figure4, figure5
 from liehom.studies.paper.reproduction import Reproduction
@@ -51,6 +51,6 @@ def reproduce(name: str, *, quick: bool = False, seed: int | None = None) -> Rep
     if name not in _FIGURES:
         raise InputError(f"there is no figure {name!r} to reproduce, expected one of {', '.join(NAMES)}")
     if seed is not None and (isinstance(seed, bool) or not isinstance(seed, int) or seed < 0):
-        raise InputError(f"a seed is a non-negative integer, got {seed!r}")
+        raise InputError(f"a seed is a non-negative integer, got {displayed(seed)}")
     done = _FIGURES[name](quick) if seed is None else _FIGURES[name](quick, seed)
     return replace(done, settings={"quick": bool(quick), "seed": seed})

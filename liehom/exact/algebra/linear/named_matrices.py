@@ -115,7 +115,7 @@ def e6(parameters: tuple[int, int, int] = OCTONIONS) -> IntegerArray:
 def albert_idempotent(k: int) -> IntegerArray:
     """Coordinates of the primitive idempotent E_k, k = 1, 2 or 3."""
     if k not in (1, 2, 3):
-        raise InputError(f"the primitive idempotents are numbered 1, 2, 3; got {k!r}")
+        raise InputError(f"the primitive idempotents are numbered 1, 2, 3; got {displayed(k)}")
     return np.eye(_DIMENSION, dtype=np.int64)[k - 1]
 
 
@@ -416,7 +416,7 @@ def dirac_matrices(basis: DiracBasis = "dirac") -> list[Expression]:
         ]
     first = {"dirac": blocks(one, zero, zero, -one), "weyl": blocks(zero, one, one, zero)}
     if basis not in first:
-        raise InputError(f"the bases of the Dirac matrices are 'dirac', 'weyl' and 'majorana', got {basis!r}")
+        raise InputError(f"the bases of the Dirac matrices are 'dirac', 'weyl' and 'majorana', got {displayed(basis)}")
     return [first[basis], *(blocks(zero, s, -s, zero) for s in (x, y, z))]
 
 
@@ -449,9 +449,11 @@ def spin_matrices(spin: ScalarLike) -> list[Expression]:
         number = QQ.convert(spin)
         j = Fraction(int(number.p), int(number.q))
     except LiehomError as error:
-        raise InputError(f"a spin is an integer or half-integer such as 1 or '3/2', got {spin!r}: {error}") from None
+        raise InputError(
+            f"a spin is an integer or half-integer such as 1 or '3/2', got {displayed(spin)}: {error}"
+        ) from None
     if j < 0 or j.denominator > 2:
-        raise InputError(f"a spin is an integer or half-integer at least 0 such as 1 or '3/2', got {spin!r}")
+        raise InputError(f"a spin is an integer or half-integer at least 0 such as 1 or '3/2', got {displayed(spin)}")
     n = int(2 * j) + 1
     m = [sympy.Rational((j - k).numerator, (j - k).denominator) for k in range(n)]
     raising = sympy.zeros(n)

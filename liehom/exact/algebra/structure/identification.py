@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import final
 
-from liehom.base.errors import InputError, UndecidedError
+from liehom.base.errors import InputError, UndecidedError, displayed
 from liehom.exact.algebra.core.lie_algebra import LieAlgebra
 from liehom.exact.algebra.core.subalgebra import Subalgebra
 from liehom.exact.algebra.roots.real_form import (
@@ -88,7 +88,7 @@ def is_isomorphic(first: LieAlgebra, second: LieAlgebra) -> bool:
     """Implements `LieAlgebra.is_isomorphic`."""
     for algebra in (first, second):
         if not isinstance(algebra, LieAlgebra):
-            raise InputError(f"expected a Lie algebra to compare with, such as lh.so(3); got {algebra!r}")
+            raise InputError(f"expected a Lie algebra to compare with, such as lh.so(3); got {displayed(algebra)}")
     if first.dimension != second.dimension:
         return False
     for algebra in (first, second):

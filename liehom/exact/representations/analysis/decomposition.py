@@ -9,7 +9,14 @@ from typing import Literal, cast, final
 
 import numpy as np
 
-from liehom.base.errors import CertificateError, FieldError, InputError, NotCompletelyReducibleError, UndecidedError
+from liehom.base.errors import (
+    CertificateError,
+    FieldError,
+    InputError,
+    NotCompletelyReducibleError,
+    UndecidedError,
+    displayed,
+)
 from liehom.base.objects import Displayed
 from liehom.base.typing import Array
 from liehom.exact.algebra.core.lie_algebra import LieAlgebra
@@ -47,7 +54,7 @@ ATTEMPTS = 30
 def intertwining_maps(rho: Representation, sigma: Representation) -> list[ExactMatrix]:
     """Implements `Representation.intertwiners`."""
     if not hasattr(sigma, "algebra") or not hasattr(sigma, "matrices"):
-        raise InputError(f"expected a Representation of the same algebra, such as lh.adjoint(g); got {sigma!r}")
+        raise InputError(f"expected a Representation of the algebra, such as lh.adjoint(g); got {displayed(sigma)}")
     if rho.algebra is not sigma.algebra:
         if rho.field != sigma.field:
             raise FieldError(f"representations over {rho.field.name} and {sigma.field.name}: bring both over one field")

@@ -12,7 +12,7 @@ from typing import Any, Literal, Protocol, TypeAlias, final, overload
 
 import numpy as np
 
-from liehom.base.errors import InputError, ShapeError
+from liehom.base.errors import InputError, ShapeError, displayed
 from liehom.base.typing import ComplexArray, Expression, ScalarLike, VectorLike
 from liehom.exact.algebra.linear.complex_matrices import is_complex_linear, is_hermitian_array, parts_of_real_matrix
 from liehom.exact.scalars.complex_parts import complex_parts, is_complex, sympy_number
@@ -28,7 +28,7 @@ KINDS: tuple[Coordinates, ...] = ("real", "complex", "hermitian")
 def require_coordinates(coordinates: Coordinates, matrices: Sequence[Matrix], size: int) -> None:
     """Raise `InputError` or `ShapeError` if matrices of this size do not act on vectors with these coordinates."""
     if coordinates not in KINDS:
-        raise InputError(f"coordinates are {', '.join(map(repr, KINDS))}, got {coordinates!r}")
+        raise InputError(f"coordinates are {', '.join(map(repr, KINDS))}, got {displayed(coordinates)}")
     if coordinates == "hermitian" and isqrt(size) ** 2 != size:
         raise ShapeError(f"Hermitian n x n matrices have n^2 real coordinates, the matrices have size {size}")
     if coordinates != "complex":

@@ -8,7 +8,7 @@ from typing import Any, cast
 
 import numpy as np
 
-from liehom.base.errors import InputError, NotInSpanError, ShapeError, SingularError
+from liehom.base.errors import InputError, NotInSpanError, ShapeError, SingularError, displayed
 from liehom.exact.algebra.linear.complex_matrices import has_complex_entry, list_of_matrices, real_matrices
 from liehom.exact.representations.core.representation import Representation
 from liehom.exact.scalars.exact_field import ExactMatrix
@@ -78,7 +78,7 @@ def rows_of_matrices(
 ) -> Matrix:
     """The matrix (k, dim g) with the coefficients of k elements of g, given by their matrices, as rows."""
     if isinstance(matrices, str) or not hasattr(matrices, "__iter__"):
-        raise InputError(f"a list of square matrices was expected, got {matrices!r}")
+        raise InputError(f"a list of square matrices was expected, got {displayed(matrices)}")
     rows = [
         coordinates_of(rho, a, hermitian=hermitian, what=f"matrix {k}{of}", index=k) for k, a in enumerate(matrices)
     ]

@@ -306,7 +306,7 @@ def _form(form: RealForm | str) -> RealForm:
     if isinstance(form, str):
         return RealForm.of_name(form)
     if not isinstance(form, RealForm):
-        raise InputError(f"a real form or its name, such as 'so(4,1)', is needed, got {form!r}")
+        raise InputError(f"a real form or its name, such as 'so(4,1)', is needed, got {displayed(form)}")
     return form
 
 

@@ -9,7 +9,7 @@ from typing import Any, final
 
 import numpy as np
 
-from liehom.base.errors import InputError
+from liehom.base.errors import InputError, displayed
 from liehom.base.typing import IntegerArray, ObjectArray
 from liehom.exact.algebra.core.lie_algebra import LieAlgebra
 from liehom.exact.algebra.core.structure_constants import StructureConstants
@@ -191,7 +191,7 @@ class EntryMap:
                     array[at] += factor * entry
             return FloatMatrix(matrix.field, array.reshape(m, m), matrix.error * self._size())
         if not isinstance(matrix, ExactMatrix):
-            raise InputError(f"expected a matrix over a field, got {matrix!r}")
+            raise InputError(f"expected a matrix over a field, got {displayed(matrix)}")
         tables: list[dict[int, int]] = []
         for part in matrix.parts:
             table: dict[int, int] = {}
@@ -319,4 +319,4 @@ def _sorting_sign(word: list[int], place: int) -> int:
 
 def _require_degree(k: object) -> None:
     if isinstance(k, bool) or not isinstance(k, (int, np.integer)) or k < 0:
-        raise InputError(f"the degree of a power is an integer at least 0, got {k!r}")
+        raise InputError(f"the degree of a power is an integer at least 0, got {displayed(k)}")
