@@ -253,6 +253,44 @@ def isospectral() -> Problem:
     )  # fmt: skip
 
 
+# -- orbits that are not spheres, for calls by tolerance ---------------------------------------------------
+@cache
+def underwater_body() -> Problem:
+    """Kirchhoff's equations of a body in a fluid, on coadjoint orbits of se(3)."""
+    rho, rng = lh.coadjoint(lh.euclidean(3)), np.random.default_rng(80)
+    a = 0.2 * rng.normal(size=(6, 6))
+    linear = a @ a.T + np.diag([1, 0.6, 0.4, 0.5, 0.8, 1.1])
+    return Problem(
+        name="SE(3)", title="body in a fluid, on coadjoint orbits of SE(3)", start=_sphere(6), energy=None, drift=_norm,
+        lanes_span=20.0, slow=0.5, span=30.0, trajectory_span=30.0, **_linear_generator(rho, np.zeros(6), linear),
+    )  # fmt: skip
+
+
+def _conjugated(name: str, title: str, eigenvalues: Sequence[float], seed: int) -> Problem:
+    """An affine generator on the matrices of Sym(k) with given eigenvalues."""
+    k = len(eigenvalues)
+    space, rho, rng = lh.instances.SymmetricMatrices(k), lh.sym_conjugation(k), np.random.default_rng(seed)
+    constant, linear = (
+        0.5 * rng.normal(size=rho.algebra.dimension),
+        0.2 * rng.normal(size=(rho.algebra.dimension, rho.size)),
+    )
+    return Problem(
+        name=name, title=title, start=_moved(rho, space.to_vector(np.diag(eigenvalues))), energy=None,
+        drift=lambda m: np.linalg.eigvalsh(space.to_matrix(m)), lanes_span=10.0, slow=0.5, span=10.0,
+        trajectory_span=10.0, full=False, **_linear_generator(rho, constant, linear),
+    )  # fmt: skip
+
+
+@cache
+def grassmannian() -> Problem:
+    return _conjugated("Gr(2,4)", "generic quadratic field on Gr(2,4)", [1.0, 1.0, 0.0, 0.0], 83)
+
+
+@cache
+def symmetric4() -> Problem:
+    return _conjugated("Sym(4)", "isospectral flow on Sym(4)", [1.0, 0.3, -0.4, -0.9], 81)
+
+
 # -- coupled spins -------------------------------------------------------------------------------------------
 @cache
 def chain(count: int = SPINS) -> Problem:
