@@ -51,6 +51,7 @@ FAILING = {
 
 
 @pytest.mark.slow
+@pytest.mark.filterwarnings("ignore:status -1")
 @pytest.mark.parametrize("case", list(FAILING))
 def test_failures_have_the_status_of_numpy(case: str) -> None:
     field, span, options = FAILING[case]
