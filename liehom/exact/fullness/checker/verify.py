@@ -141,18 +141,20 @@ def verify_range(pair: PairData, certificate: Certificate | Mapping[str, Any]) -
     certificate = certificate.copied() if isinstance(certificate, Certificate) else Certificate.from_json(certificate)
     checked = check_pair(pair)
     check_same_field(checked.field, certificate.field)
-    d = checked.codimension
-    if certificate.kind == "generic":
-        rank = _images(checked, certificate.vector("eta", checked.dimension)).rank()
+    return _verify_range(checked, certificate)
+
+
+def _verify_range(pair: CheckedPair, certificate: Certificate) -> bool:
+    n, d, kind = pair.dimension, pair.codimension, certificate.kind
+    _require(kind in ("generic", "slice", "lattice"), "kind", f"the kind {kind!r} is not about the range condition")
+    if kind == "generic":
+        rank = _images(pair, certificate.vector("eta", n)).rank()
         _require(rank == d, "rank", f"[h, eta] + R eta has rank {rank} of {d} in g/h")
         return True
-    if certificate.kind not in ("slice", "lattice"):
-        raise CertificateError("kind", f"a certificate of kind {certificate.kind!r} proves nothing of the range condition")
-    a = certificate.vector("point", checked.dimension)
-    w = certificate.matrix("directions", None, checked.dimension)
-    reached = checked.field.stack_rows([_images(checked, a), w @ checked.quotient], d).rank()
+    a, w = certificate.vector("point", n), certificate.matrix("directions", None, n)
+    reached = pair.field.stack_rows([_images(pair, a), w @ pair.quotient], d).rank()
     _require(reached == d, "slice", f"the orbit of the point and the directions span {reached} of {d} dimensions")
-    (_verify_stabilizer if certificate.kind == "slice" else _verify_lattice)(checked, certificate, a, w)
+    (_verify_stabilizer if kind == "slice" else _verify_lattice)(pair, certificate, a, w)
     return False
 
 
@@ -184,7 +186,7 @@ MAX_LATTICE = 20_000
 """Largest number of points of a lattice."""
 
 
-def _verify_lattice(pair: CheckedPair, certificate: Certificate, a: list[Scalar], w: ExactMatrix) -> None:
+def _verify_lattice(pair: CheckedPair, _: Certificate, a: list[Scalar], w: ExactMatrix) -> None:
     d, rows = pair.codimension, w.to_rows()
     r = d - len(rows)
     _require(0 <= r < d, "bound", f"{len(rows)} directions are given, expected between 1 and {d}")
