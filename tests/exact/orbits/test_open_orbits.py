@@ -17,11 +17,12 @@ from tests.sampling import examples
 CASES: dict[str, tuple[int, int | None, int | None]] = {
     "so(9)/so(8)": (8, 2, 1), "so(3,1)/so(2,1)": (3, 2, 3), "affine(so(1,1))": (2, 2, 4),
     "affine(so(3,2))": (5, 2, 2), "affine(gl(4))": (4, 0, 1), "affine(sl(2,C))": (4, 0, 1),
-    "affine(S2(gl(2)))": (3, 2, 3), "affine(S3(gl(2)))": (4, 4, None), "affine(S2(gl(4)))": (10, 4, None),
-    "affine(L2(gl(6)))": (15, 3, None), "affine(upper(4))": (4, 1, 2), "affine(diag(1,2))": (2, 2, 4),
+    "affine(S2(gl(2)))": (3, 2, 3), "affine(S3(gl(2)))": (4, 4, 2), "affine(S2(gl(4)))": (10, 4, 5),
+    "affine(L2(gl(6)))": (15, 3, 2), "affine(upper(4))": (4, 1, 2), "affine(diag(1,2))": (2, 2, 4),
     "affine(field(1,0))": (2, 2, 1), "affine(copies(2,gl(2,C)))": (8, 4, 1), "sl(3,C)/P{1,2}": (6, 2, 1),
     "so(5,C)/P{1,2}": (8, 6, 1), "sl(4)/so(4)": (7, None, 0), "so(8)/so(4)+so(4)": (13, None, 0),
     "affine(S2(gl(2,C)))": (8, None, 0), "so(3)/0": (1, None, 0), "so(3)/so(3)": (0, None, 1),
+    "so(5,3)/P{3,4}": (9, 4, None),
 }  # fmt: skip
 
 
