@@ -143,7 +143,8 @@ class RangeClassification(Displayed):
                 return space
             what = f"rho(h) is completely reducible and preserves a form of signature {_signs(form)} up to scalars"
             return f"{what}, and is {'' if self.generic else 'not '}a real form of a transitive group of a sphere"
-        return "prehomogeneous, by rank" if self.generic else "by rank"
+        text = "prehomogeneous, by rank" if self.generic else "by rank"
+        return text + ("; h is solvable and contains the nilradical of a Borel subalgebra" if has_nilradical(self.pair) else "")
 
     @cached_property
     def _action(self) -> TracelessIsotropyAction:
@@ -255,6 +256,20 @@ def is_parabolic(pair: Pair) -> bool:
         return True
     blocks = pair.algebra.table.contract(basis, n, pair.field.identity(pair.algebra.dimension))
     return bool(as_exact(pair.field.stack_rows(list(blocks), pair.algebra.dimension)).rank() == n.nrows)
+
+
+def has_nilradical(pair: Pair) -> bool:
+    """Whether g is semisimple, and h a solvable subalgebra that contains the nilradical n of a Borel subalgebra b.
+
+    Then b is the normalizer of h, and h = n + t' for a subspace t' of a torus, as in Theorem P''.
+    """
+    if not pair.subalgebra.as_algebra().is_solvable() or not pair.algebra.is_semisimple():
+        return False
+    borel = pair.algebra.normalizer(pair.subalgebra)
+    if not borel.as_algebra().is_solvable() or not is_parabolic(Pair(pair.algebra, borel)):
+        return False
+    n = (as_exact(borel.basis) @ as_exact(pair.algebra.killing_form())).null_space()
+    return bool((n @ as_exact(pair.subalgebra.quotient().projection)).is_zero())
 
 
 def is_completely_reducible(action: TracelessIsotropyAction) -> bool:
