@@ -1,8 +1,8 @@
 """The range condition at generic eta: a certificate for every pair, and the theorem that says why.
 
 A pair is generic if [h, eta] + R eta + h = g for eta outside a proper algebraic set. docs/theory/range.md has the
-theorems and their proofs. The certificate alone decides. The theorems give the reason, the set of failures and the number
-of open orbits, which are computed when they are first read.
+theorems and their proofs. The certificate alone decides. The theorems give the reason, the set of failures and the
+number of open orbits, which are computed when they are first read.
 """
 
 from __future__ import annotations
@@ -144,7 +144,8 @@ class RangeClassification(Displayed):
             what = f"rho(h) is completely reducible and preserves a form of signature {_signs(form)} up to scalars"
             return f"{what}, and is {'' if self.generic else 'not '}a real form of a transitive group of a sphere"
         text = "prehomogeneous, by rank" if self.generic else "by rank"
-        return text + ("; h is solvable and contains the nilradical of a Borel subalgebra" if has_nilradical(self.pair) else "")
+        solvable = "; h is solvable and contains the nilradical of a Borel subalgebra"
+        return text + solvable * has_nilradical(self.pair)
 
     @cached_property
     def _action(self) -> TracelessIsotropyAction:
@@ -241,10 +242,10 @@ def _signs(form: ExactMatrix) -> tuple[int, int]:
 def is_parabolic(pair: Pair) -> bool:
     """Whether g is semisimple and h contains a Borel subalgebra of the complexification.
 
-    Let n be the orthogonal complement of h for the Killing form. h is parabolic if and only if n lies in h and [h, n] = n.
-    For a parabolic h, n is its nilradical. Conversely n is an ideal of h, solvable by Cartan's criterion, and [h, n] = n
-    lies in the nilpotent radical of h, so its elements are nilpotent in the adjoint representation of g. So n lies in the
-    nilradical of a Borel subalgebra b, and h, its complement, contains b.
+    Let n be the orthogonal complement of h for the Killing form. h is parabolic if and only if n lies in h and [h, n]
+    = n. For a parabolic h, n is its nilradical. Conversely n is an ideal of h, solvable by Cartan's criterion, and
+    [h, n] = n lies in the nilpotent radical of h, so its elements are nilpotent in the adjoint representation of g.
+    So n lies in the nilradical of a Borel subalgebra b, and h, its complement, contains b.
     """
     basis, form = as_exact(pair.subalgebra.basis), as_exact(pair.algebra.killing_form())
     if form.rank() < pair.algebra.dimension:

@@ -371,8 +371,9 @@ def _eigenspace(pair: Pair, certificate: CertificateLike) -> list[FailureSet]:
 # a complex algebraic set, of real codimension at least 2. If rho(h) is one, and its own generic rank is d, such a set
 # contains the complement of U. In both cases U is connected.
 #
-# For an irreducible rho whose commutant is R, or C with a center, the dimension, the degree of f and the simple ideals of
-# L0 determine f up to isomorphism in the cases below (docs/theory/range.md), and its components are counted there.
+# For an irreducible rho whose commutant is R, or C with a center, the dimension, the degree of f and the simple
+# ideals of L0 determine f up to isomorphism in the cases below (docs/theory/range.md), and its components are counted
+# there.
 
 
 class Polynomial(Protocol):
@@ -408,9 +409,9 @@ def open_orbit_count(pair: Pair) -> int:
 
 
 def counted_open_orbits(pair: Pair, generic: bool | None = None) -> tuple[int, str]:
-    """The number of open orbits and one sentence that proves it; `generic` says whether the condition holds for some psi.
+    """The number of open orbits and one sentence that proves it; raises as `open_orbit_count` does.
 
-    Raises as `open_orbit_count` does.
+    `generic` says whether the condition holds for some psi, if that is known.
     """
     require_rational(pair)
     d = pair.dimension
@@ -426,7 +427,8 @@ def counted_open_orbits(pair: Pair, generic: bool | None = None) -> tuple[int, s
     for form in invariant_forms(reduced, d, QQ).symmetric if degree == 2 else ():
         if form.rank() > 1:  # it divides the relative invariant, and has its degree
             return _components(form), f"f is a quadratic form of signature {form.signature()[:2]}"
-    return _of_irreducible(reduced, d, degree) or (_of_factors(pair, degree), "the factors of f are eliminated one by one")
+    known = _of_irreducible(reduced, d, degree)
+    return known or (_of_factors(pair, degree), "the factors of f are eliminated one by one")
 
 
 def _of_irreducible(reduced: Sequence[ExactMatrix], d: int, degree: int) -> tuple[int, str] | None:
@@ -480,7 +482,7 @@ def _of_simple(form: RealForm, d: int, degree: int) -> tuple[int, str] | None:
     if r == 4 and key == ("sl(2,R)", 4):
         return 2, "f is the discriminant of binary cubics: three real roots or one"
     if r == 4 and key == ("sl(6,R)", 20):
-        return 2, "f has two signs on three-forms of R^6, which are sums of two real or of two conjugate decomposable ones"
+        return 2, "f has two signs on three-forms of R^6, sums of two real or of two conjugate decomposable ones"
     return None
 
 
@@ -502,7 +504,7 @@ def frames(n: int, p: int, q: int) -> int:
 
 
 def _is_norm_of_quadratic_form(reduced: Sequence[ExactMatrix], commuting: Sequence[ExactMatrix], d: int) -> bool:
-    """Whether L0 = S + R J, and S preserves a complex quadratic form of rank at least 3, for the complex structure J."""
+    """Whether L0 = S + R J for a complex structure J, and S preserves a complex quadratic form of rank at least 3."""
     (j,) = traceless(commuting, d, QQ)
     norm = (j @ j)[0, 0]
     if norm >= 0 or j @ j != QQ.identity(d).scale(norm) or all((a @ j).trace() == 0 for a in reduced):
@@ -566,10 +568,11 @@ def _of_factors(pair: Pair, degree: int) -> int:
     return count
 
 
-# The components of the set where none of some irreducible polynomials vanishes.  Let Y be a space of directions y along
-# which all polynomials but p are constant and p is affine, p(x + y) = p(x) + c(x) y.  On both sides p > 0 and p < 0 the
-# fibers over V/Y are half spaces if c is not 0, and all of Y or empty if c is 0.  So the components are twice those of the
-# image, and those of the image are those for the other polynomials if c is 0 in codimension 2 only, where these are not 0.
+# The components of the set where none of some irreducible polynomials vanishes.  Let Y be a space of directions y
+# along which all polynomials but p are constant and p is affine, p(x + y) = p(x) + c(x) y.  On both sides p > 0 and p
+# < 0 the fibers over V/Y are half spaces if c is not 0, and all of Y or empty if c is 0.  So the components are twice
+# those of the image, and those of the image are those for the other polynomials if c is 0 in codimension 2 only,
+# where these are not 0.
 
 MAX_COUNTED = 10  # dimension of g/h for minors in the count of components
 
@@ -591,7 +594,9 @@ def _signed_components(factors: Sequence[Any], d: int) -> int | None:
 
 def _is_affine_over(p: Any, others: Sequence[Any], d: int) -> bool:
     """Whether there is a space Y as above."""
-    slopes = [{(k, *e): c for k, o in enumerate(others) for e, c in o.derivative(i).to_dict().items()} for i in range(d)]
+    slopes = [
+        {(k, *e): c for k, o in enumerate(others) for e, c in o.derivative(i).to_dict().items()} for i in range(d)
+    ]
     terms = sorted({term for slope in slopes for term in slope})
     constant = QQ.matrix([[slope.get(term, QQ.zero) for term in terms] for slope in slopes], (d, len(terms)))
     chosen: list[list[Scalar]] = []

@@ -77,17 +77,19 @@ def _by_pivots(columns: Array, bounds: Array) -> IntegerArray:
     return ranks
 
 
-# The generic rank of x -> [A_1 x, ..., A_m x] for a Lie algebra L of matrices that is spanned by A_i: the orbit dimension.
+# The generic rank of x -> [A_1 x, ..., A_m x] for a Lie algebra L of matrices that is spanned by A_i: the orbit
+# dimension.
 #
-# One x with a large rank is a lower bound.  The upper bound comes from a slice.  Let W be a complement of L x0 in V.  The
-# map (g, w) -> g (x0 + w) has the differential L + W -> V, (A, w) -> A x0 + w, at (1, 0), which is onto.  So the orbits
-# of the points x0 + w contain a neighborhood of x0, and the rank is constant on orbits.  Hence a bound of the rank at
-# x0 + w for all w in W is a bound everywhere.
+# One x with a large rank is a lower bound.  The upper bound comes from a slice.  Let W be a complement of L x0 in V.
+# The map (g, w) -> g (x0 + w) has the differential L + W -> V, (A, w) -> A x0 + w, at (1, 0), which is onto.  So the
+# orbits of the points x0 + w contain a neighborhood of x0, and the rank is constant on orbits.  Hence a bound of the
+# rank at x0 + w for all w in W is a bound everywhere.
 #
-# Let k independent combinations of the A_i annihilate x0 and W.  Then the rank is at most m - k at x0 + w.  With x0 = 0,
-# W = V and the combinations that are zero this bound is dim L.  With all combinations that annihilate a generic x0 it is
-# the rank r at x0, if the vectors that they annihilate contain a complement W.  This is so if the group of L is reductive
-# and its generic orbits are closed, in particular if it preserves a definite form up to scale, and for symmetric pairs.
+# Let k independent combinations of the A_i annihilate x0 and W.  Then the rank is at most m - k at x0 + w.  With x0 =
+# 0, W = V and the combinations that are zero this bound is dim L.  With all combinations that annihilate a generic x0
+# it is the rank r at x0, if the vectors that they annihilate contain a complement W.  This is so if the group of L is
+# reductive and its generic orbits are closed, in particular if it preserves a definite form up to scale, and for
+# symmetric pairs.
 #
 # In other cases, the minors of order r + 1 are polynomials of degree at most r + 1 in the d - r coordinates of w.  They
 # vanish if they vanish at the points whose coordinates are the nodes t_i with indices of sum at most r + 1, which are
@@ -99,8 +101,8 @@ MAX_POINTS = 20_000
 class RankProof(NamedTuple):
     """A proof that no x has a rank above `rank`: a slice x0 + W, with `directions` a basis of W in its rows.
 
-    The rows of `stabilizer` are coefficients over the A_i of combinations that annihilate x0 and W; None stands for ranks
-    at the points of a lattice.
+    The rows of `stabilizer` are coefficients over the A_i of combinations that annihilate x0 and W; None stands for
+    ranks at the points of a lattice.
     """
 
     rank: int

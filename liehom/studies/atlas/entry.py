@@ -274,10 +274,11 @@ def facts(pair: Pair, verdict: Verdict, *, seconds: float = 60.0) -> dict[str, F
 
     ``"key"``, ``"row"`` and ``"space"`` are key, name and space of the row of a full pair in the classification, see
     `liehom.classify`, and None for other pairs. ``"range_condition"``: whether [h, eta] + R eta + h = g for generic
-    eta, see `liehom.classify_range`. ``"orbit_dimension"``: the dimension of [h, eta] + R eta in g/h for generic eta, see
-    `liehom.orbits.orbit_dimension`. ``"invariant_degree"``: see `liehom.orbits.invariant_degree`, None if the range
-    condition holds for no eta. ``"open_orbits"``: the number of open orbits on g/h, see
-    `liehom.orbits.open_orbit_count`. ``"missing"``: the reasons why facts are missing, by name. Missing facts are None.
+    eta, see `liehom.classify_range`. ``"orbit_dimension"``: the dimension of [h, eta] + R eta in g/h for generic eta,
+    see `liehom.orbits.orbit_dimension`. ``"invariant_degree"``: see `liehom.orbits.invariant_degree`, None if the
+    range condition holds for no eta. ``"open_orbits"``: the number of open orbits on g/h, see
+    `liehom.orbits.open_orbit_count`. ``"missing"``: the reasons why facts are missing, by name. Missing facts are
+    None.
 
     Parameters
     ----------

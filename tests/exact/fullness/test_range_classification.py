@@ -275,6 +275,47 @@ def test_the_outside_pairs_are_two_hundred() -> None:
     assert len(OUTSIDE) == 200
 
 
+def cascade(system: Any) -> list[tuple[int, ...]]:
+    """The highest root of each component, and so on among the positive roots orthogonal to it."""
+    left, chosen = list(system.positive_roots), []
+    while left:
+        top = max(left, key=sum)  # a root of the largest height is the highest one of its component
+        chosen.append(top)
+        left = [root for root in left if system.inner(root, top) == 0]
+    return chosen
+
+
+@pytest.mark.parametrize("seed", range(16))
+@pytest.mark.parametrize("kind", ["A1", "A2", "A3", "B2", "B3", "C3", "D4", "F4"])
+def test_nilradicals_with_a_part_of_a_torus(kind: str, seed: int) -> None:
+    """Theorem P''."""
+    g, system, rng = lh.chevalley(kind), lh.root_system(kind), random.Random(seed)
+    rank, positive = system.rank, len(system.positive_roots)
+    betas = cascade(system)
+    coroots = [system.coroot(beta) for beta in betas]
+    simple = system.simple_roots
+    if seed % 2:  # some elements of the torus, orthogonal to coroots of the cascade or not
+        torus = [[rng.randint(-2, 2) for _ in range(rank)] for _ in range(rng.randint(0, rank))]
+    else:  # all of a complement of the coroots, or all but one dimension, and combinations of the coroots
+        complement = np.array(lh.QQ.matrix(coroots).null_space().to_numpy()).round(6)
+        torus = [[int(x) for x in row] for row in np.array(lh.QQ.matrix(coroots).null_space().cleared().to_numpy())]
+        torus = torus[: len(complement) - rng.randint(0, 1)]
+        torus += [
+            np.dot([rng.randint(-1, 1) for _ in betas], coroots).tolist() for _ in range(rng.randint(0, len(betas)))
+        ]
+    torus = lh.QQ.matrix(torus, (len(torus), rank)).row_space()
+    on_torus = [[system.pairing(beta, root) for root in simple] for beta in betas]  # beta(h_i)
+    values = torus @ lh.QQ.matrix(on_torus).T
+    extended = lh.QQ.stack_rows([values, lh.QQ.matrix([[1] * len(betas)])], len(betas))
+    q = rank - lh.QQ.stack_rows([torus, lh.QQ.matrix(coroots)], rank).rank()
+    expected = (q == 0 and extended.rank() == len(betas)) or (q == 1 and values.rank() == len(betas))
+    rows = [[int(i == j) for j in range(g.dimension)] for i in range(rank, rank + positive)]
+    result = lh.classify_range(lh.Pair(g, [*rows, *([*t, *[0] * 2 * positive] for t in torus.to_rows())]))
+    assert result.generic is expected and result.verify()
+    seen_reason = "contains the nilradical" in result.reason
+    assert seen_reason or result.reason.startswith(("parabolic", "by rank: rho", "rho(h)", "dim g/h"))
+
+
 # -- the numbers of open orbits, by labels of random points that separate them ---------------------------------
 def symmetric_label(x: Array) -> tuple[int, ...]:
     return tuple(np.sign(np.linalg.eigvalsh(x)).astype(int))
@@ -306,7 +347,7 @@ def recipe_pair(name: str) -> lh.Pair:
 def frame_label(x: Array, form: Array) -> tuple[int, ...]:
     """Signature of the Gram matrix and, where a maximal definite part fills that of the form, its orientation."""
     gram = x @ form @ x.T
-    values, vectors = np.linalg.eigh(gram)
+    values = np.linalg.eigvalsh(gram)
     label = [int((values > 0).sum())]
     p = int((np.diag(form) > 0).sum())
     q = len(form) - p
@@ -343,7 +384,9 @@ def signs_of(pair: lh.Pair, count: int) -> int:
     assert invariant is not None
     rng = random.Random(1)
     points = [[rng.randint(-9, 9) for _ in range(pair.dimension)] for _ in range(count)]
-    return len({tuple(f(*x) > 0 for f in invariant.factors) for x in points if all(f(*x) != 0 for f in invariant.factors)})
+    return len(
+        {tuple(f(*x) > 0 for f in invariant.factors) for x in points if all(f(*x) != 0 for f in invariant.factors)}
+    )
 
 
 @pytest.mark.parametrize(("name", "count"), [
