@@ -73,7 +73,7 @@ def classify_range(pair: Pair) -> RangeClassification:
 
 def _certificate(pair: Pair, proof: RankProof) -> Certificate:
     """The proof in coordinates of g."""
-    field, data = pair.field, pair.subalgebra.quotient()
+    field, data = proof.directions.field, pair.subalgebra.quotient()
     fields: dict[str, Any] = {"point": (field.matrix([proof.point]) @ data.lift).row(0)}
     fields["directions"] = as_exact(proof.directions) @ as_exact(data.lift)
     if proof.stabilizer is None:
