@@ -164,7 +164,7 @@ def number_of_points(rank: int, dimension: int) -> int:
 
 
 def _slice(forms: LinearForms, matrix: ExactMatrix, point: list[Scalar], rank: int) -> RankProof | None:
-    """The proof by the stabilizer of a point, from the matrix at the point; None if it is none."""
+    """The proof by the stabilizer of a point, from the matrix at the point; None if it fixes no complement."""
     d, field = matrix.nrows, forms.field
     stabilizer = matrix.null_space()
     # column i of an element of the stabilizer is its value at the unit vector e_i

@@ -86,7 +86,7 @@ def test_a_certificate_survives_json_and_is_refused_by_pairs_with_the_other_answ
 
 
 def claims(pair: lh.Pair, data: Any) -> bool | None:
-    """What a damaged certificate proves; None if it is refused."""
+    """The claim that a damaged certificate proves; None if it is refused."""
     try:
         return lh.fullness.verify_range(pair, data)
     except (CertificateError, CertificateFormatError):
