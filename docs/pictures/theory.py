@@ -154,7 +154,7 @@ def cone_of_a_form(colours: Sequence[str]) -> Any:
     for colour, point in zip(colours, ([0, 0, 0.9], [0, 0, -0.9], [1.1, 0, 0]), strict=False):
         x = np.array(point)
         axes.scatter(*x, color=colour, s=40)
-        axes.text(*(x + [0.12, 0, 0.04]), f"B {'<' if x @ form @ x < 0 else '>'} 0", color=colour)
+        axes.text(*np.add(x, (0.12, 0, 0.04)), f"B {'<' if x @ form @ x < 0 else '>'} 0", color=colour)
     axes.set(xlim=(-1.1, 1.1), ylim=(-1.1, 1.1), zlim=(-1, 1), box_aspect=(1, 1, 0.9))
     axes.set_axis_off()
     return figure
