@@ -1,4 +1,4 @@
-"""Pictures of the proofs: the range condition, isotropy corrections, landings, and signatures of simple ideals."""
+"""Pictures of the proofs: the range condition, its cones, corrections, landings, and signatures of simple ideals."""
 
 from __future__ import annotations
 
@@ -140,4 +140,37 @@ def isotropy_beyond_a_turn(colours: Sequence[str]) -> Any:
             right.plot(np.full(chosen.sum(), size), distances[chosen], mark, color=colour, markersize=2.6)
     right.plot(sizes, 2 * 2**0.5 * np.pi * sizes**-1.5, color=colours[6], linewidth=1.4)
     right.set(xscale="log", yscale="log", xlabel="K h", ylabel="distance of the start", ylim=(0.007, 3.6))
+    return figure
+
+
+@picture
+def cone_of_a_form(colours: Sequence[str]) -> Any:
+    """The cone B = 0 of so(3,1)/so(2,1), and one point in each of the three open orbits."""
+    form = np.diag([1.0, 1.0, -1.0])
+    figure = new_figure(4.2, 3.6)
+    axes = figure.add_subplot(projection="3d")
+    turn, height = np.meshgrid(np.linspace(0, 2 * np.pi, 61), np.linspace(-1, 1, 21))
+    axes.plot_surface(height * np.cos(turn), height * np.sin(turn), height, color=GREY, alpha=0.35, linewidth=0)
+    for colour, point in zip(colours, ([0, 0, 0.9], [0, 0, -0.9], [1.1, 0, 0]), strict=False):
+        x = np.array(point)
+        axes.scatter(*x, color=colour, s=40)
+        axes.text(*np.add(x, (0.12, 0, 0.04)), f"B {'<' if x @ form @ x < 0 else '>'} 0", color=colour)
+    axes.set(xlim=(-1.1, 1.1), ylim=(-1.1, 1.1), zlim=(-1, 1), box_aspect=(1, 1, 0.9))
+    axes.set_axis_off()
+    return figure
+
+
+@picture
+def open_orbits_of_cubics(colours: Sequence[str]) -> Any:
+    """Cubics x^3 + p x + q: inside the cusp of the discriminant they have three real roots, outside one."""
+    figure = new_figure(4.4, 3.0)
+    axes = figure.add_subplot()
+    p, q = np.meshgrid(np.linspace(-3, 1.5, 201), np.linspace(-2.5, 2.5, 201))
+    axes.contourf(p, q, -4 * p**3 - 27 * q**2, levels=[-1e9, 0, 1e9], colors=colours[:2], alpha=0.25)
+    axes.contour(p, q, -4 * p**3 - 27 * q**2, levels=[0], colors=colours[1])
+    for x, y in ((-2.2, 0.0), (0.2, 1.4)):
+        roots = np.roots([1, 0, x, y])
+        number = int((abs(roots.imag) < 1e-9).sum())
+        axes.text(x, y, f"{number} real root{'s' * (number > 1)}", ha="center", va="center")
+    axes.set(xlabel="p", ylabel="q")
     return figure

@@ -209,12 +209,13 @@ def range_(
     ] = None,
     json: JsonOption = False,
 ) -> None:
-    """Decide whether the range condition holds, for generic eta or for a given element."""
+    """Decide whether the range condition holds, for generic eta, with the reason, or for a given element."""
     run(lambda: _range(pair, psi, json))
 
 
 def _range(text: str, psi: str | None, as_json: bool) -> int:
     from liehom.cli.inputs import pair_argument, pair_facts, pair_line, row_in
+    from liehom.exact.fullness.range_classification import classify_range
     from liehom.exact.orbits.range import range_condition
 
     pair = pair_argument(text)
@@ -231,6 +232,14 @@ def _range(text: str, psi: str | None, as_json: bool) -> int:
     rows.append(("psi" if row is not None else "sample psi", short_vector(tested)))
     if missing is not None:
         rows.append(("missing", f"the covector {short_vector(missing)} vanishes on h, psi and [h, psi]"))
+    if row is None and pair.field.exact:
+        result = classify_range(pair)
+        data["classification"] = result.to_json()
+        count = "not known" if result.open_orbits is None else str(result.open_orbits)
+        rows += [("reason", result.reason), ("fails on", result.fails_on)]
+        rows.append(("open orbits", f"{count}: {result.open_orbits_reason}"))
+        if result.certificate is not None:
+            rows.append(("certificate", f"of kind {result.certificate.kind!r}, verified: {result.verify()}"))
     return _shown(as_json, data, str(condition), rows, pair.field)
 
 

@@ -174,6 +174,15 @@ def test_range(words: tuple[str, ...], holds: bool, rank: int, equilibrium: bool
     assert "range condition" in liehom("range", NOT_FULL, *words).stdout
 
 
+def test_range_at_generic_eta_has_a_reason_and_a_certificate() -> None:
+    result = json.loads(liehom("range", "so(3,1)/so(2,1)", "--json").stdout)["classification"]
+    assert result["generic"] is True and result["reason"] == "class C, a real form of S^3 = SO(4)/SO(3)"
+    assert (result["fails_on"], result["open_orbits"]) == ("exactly B = 0, B of signature (2, 1)", 3)
+    assert lh.fullness.verify_range(lh.pair("so(3,1)/so(2,1)"), result["certificate"])
+    assert "verified: True" in liehom("range", "sl(3)/so(3)").stdout
+    assert "classification" not in json.loads(liehom("range", NOT_FULL, "--psi", "0,0,0,0,0,1", "--json").stdout)
+
+
 def test_range_in_h_is_an_equilibrium() -> None:
     result = liehom("range", NOT_FULL, "--psi", ",".join(str(x) for x in lh.load(NOT_FULL).subalgebra.rows()[0]))
     assert result.exit_code == 0

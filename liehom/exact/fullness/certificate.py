@@ -179,6 +179,9 @@ READERS: dict[str, dict[str, Callable[[ExactField, str, object], object]]] = {
     },
     "commutant": {"matrix": _read_square, "complement": _read_rows, "cut": _read_number},
     "dominance": {"element": _read_vector, "cut": _read_number, "eps": _read_number},
+    "generic": {"eta": _read_vector},
+    "slice": {"point": _read_vector, "directions": _read_rows, "stabilizer": _read_rows},
+    "lattice": {"point": _read_vector, "directions": _read_rows},
 }
 """For each kind of certificate, its fields and how each is read."""
 
@@ -212,6 +215,12 @@ def converted(field: ExactField, value: Any) -> Any:
 #     commutant  matrix (d x d), complement (d x n), cut
 #     dominance  element (n), cut, eps
 #
+# The last three kinds are about the range condition at generic eta, and prove no verdict about fullness.
+#
+#     generic    eta (n)
+#     slice      point (n), directions (w x n), stabilizer (k x (n + 1): elements of h and a scalar)
+#     lattice    point (n), directions (w x n)
+#
 # Matrices are dense (rows of numbers) or sparse (entries (i, j, number); every nonzero entry is listed, both (i, j)
 # and (j, i) of a symmetric matrix).
 
@@ -220,11 +229,11 @@ FORMAT, VERSION = "liehom-certificate", 1
 
 @dataclass(frozen=True, slots=True, repr=False)
 class Certificate(Displayed):
-    """Data that prove a pair full or not full; `verify_certificate` checks them.
+    """Data that prove a pair full or not full; `verify_certificate` checks them, `verify_range` the last three kinds.
 
     Parameters
     ----------
-    kind : {'trivial', 'full', 'witness', 'commutant', 'dominance'}
+    kind : {'trivial', 'full', 'witness', 'commutant', 'dominance', 'generic', 'slice', 'lattice'}
     fields : mapping
         The fields of this kind, as numbers of `field` or as JSON has them: strings and nested lists of strings
         (`Certificate.over` takes matrices as well). `also` is a Certificate or its JSON object.

@@ -6,18 +6,21 @@ import random
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import permutations
-from math import prod
+from math import comb, isqrt, prod
 from typing import Any, Protocol, cast, final
 
 import numpy as np
 
 from liehom.base.errors import FieldError, InputError, ShapeError, UndecidedError
 from liehom.base.typing import Array, VectorLike
+from liehom.exact.algebra.linear.closure import lie_closure
+from liehom.exact.algebra.roots.real_form import RealForm
+from liehom.exact.algebra.structure.identification import real_forms_of
 from liehom.exact.orbits.range import pencil, range_condition
 from liehom.exact.representations.core.pair import Pair
 from liehom.exact.representations.invariants.intertwiners import commutant, invariant_forms
-from liehom.exact.representations.invariants.irreducibility import combination, traceless
-from liehom.exact.scalars.exact_field import ExactMatrix
+from liehom.exact.representations.invariants.irreducibility import combination, trace_radical, traceless
+from liehom.exact.scalars.exact_field import ExactField, ExactMatrix
 from liehom.exact.scalars.field import Matrix, MatrixLike, Scalar
 from liehom.exact.scalars.polynomial_matrix import LinearForms, rank_losses_on_line
 from liehom.exact.scalars.rational import QQ
@@ -367,6 +370,10 @@ def _eigenspace(pair: Pair, certificate: CertificateLike) -> list[FailureSet]:
 # If rho(h) + R is a complex vector space, for a complex structure J of g/h that commutes with h, the complement of U is
 # a complex algebraic set, of real codimension at least 2. If rho(h) is one, and its own generic rank is d, such a set
 # contains the complement of U. In both cases U is connected.
+#
+# For an irreducible rho whose commutant is R, or C with a center, the dimension, the degree of f and the simple
+# ideals of L0 determine f up to isomorphism in the cases below (docs/theory/range.md), and its components are counted
+# there.
 
 
 class Polynomial(Protocol):
@@ -387,8 +394,7 @@ def open_orbit_count(pair: Pair) -> int:
     Raises
     ------
     UndecidedError
-        If the components of the complement of the relative invariant are not counted: it has a factor of degree 3 or
-        more, or the factors have variables in common.
+        If the components of the complement of the relative invariant are not counted.
 
     Examples
     --------
@@ -399,22 +405,113 @@ def open_orbit_count(pair: Pair) -> int:
     >>> [open_orbit_count(lh.pair(name)) for name in ("so(3,1)/so(2,1)", "affine(so(2,2))", "sl(3)/so(3)")]
     [3, 2, 0]
     """
+    return counted_open_orbits(pair)[0]
+
+
+def counted_open_orbits(pair: Pair, generic: bool | None = None) -> tuple[int, str]:
+    """The number of open orbits and one sentence that proves it; raises as `open_orbit_count` does.
+
+    `generic` says whether the condition holds for some psi, if that is known.
+    """
     require_rational(pair)
     d = pair.dimension
     if d == 0:
-        return 1
-    if not range_condition(pair):
-        return 0
+        return 1, "g/h is a point"
+    if not (range_condition(pair) if generic is None else generic):
+        return 0, "no orbit is open"
     if _is_complex(pair):
-        return 1
-    degree = invariant_degree(pair) or 0
-    if degree < 2:
-        return 1 + degree
+        return 1, "the complement of the open orbits has real codimension at least 2, as it is a complex set"
+    if (degree := invariant_degree(pair) or 0) < 2:
+        return 1 + degree, "f is linear" if degree else "the complement of the open orbits has codimension at least 2"
     reduced = traceless(cast(list[ExactMatrix], pair.isotropy_matrices()), d, QQ)
     for form in invariant_forms(reduced, d, QQ).symmetric if degree == 2 else ():
         if form.rank() > 1:  # it divides the relative invariant, and has its degree
-            return _components(form)
-    return _of_factors(pair, degree)
+            return _components(form), f"f is a quadratic form of signature {form.signature()[:2]}"
+    known = _of_irreducible(reduced, d, degree)
+    return known or (_of_factors(pair, degree), "the factors of f are eliminated one by one")
+
+
+def _of_irreducible(reduced: Sequence[ExactMatrix], d: int, degree: int) -> tuple[int, str] | None:
+    """The number of open orbits for a known f of degree at least 3, if L0 is irreducible; None if f is not known."""
+    commuting = commutant(reduced, d, QQ)
+    if len(commuting) == 2 and degree == 4 and _is_norm_of_quadratic_form(reduced, commuting, d):
+        return 1, "f = |Q|^2 for a complex quadratic form Q, and Q = 0 has real codimension 2"
+    if len(commuting) != 1 or trace_radical(reduced):
+        return None
+    forms = real_forms_of(lie_closure(reduced, close=False).algebra)
+    if len(forms) == 1:
+        return _of_simple(forms[0], d, degree)
+    for place, form in enumerate(forms):
+        rest = [*forms[:place], *forms[place + 1 :]]
+        n, dimension = isqrt(form.dimension + 1), sum(other.dimension for other in rest)
+        m, compact = d // n, sum(other.compact_dimension for other in rest)
+        if form.name == f"sl({n},R)" and d == n * m:
+            if degree == n == m:
+                return 2, f"f is the determinant of {n} x {n} matrices, and it has two signs"
+            signature = SIGNATURES.get((dimension, compact, m)) or next(
+                ((p, m - p) for p in range(m, (m - 1) // 2, -1) if comb(p, 2) + comb(m - p, 2) == compact), None
+            )
+            if degree == 2 * n and signature and (dimension == comb(m, 2) or (dimension, compact, m) in SIGNATURES):
+                p, q = signature
+                return frames(n, p, q), f"f is the Gram determinant of {n} vectors of R^({p},{q})"
+        if form.name == "so(3)" and degree == 4 and (dimension in (comb(d // 2, 2), {16: 21}.get(d))) and d % 4 == 0:
+            return 1, f"f = |S|^2 for a skew-Hermitian form S of H^{d // 4}, and S = 0 has codimension at least 2"
+        if (form.type, d, degree, [(x.type, x.is_split) for x in rest]) == ("A1", 12, 4, [("B2", True)]):
+            count = 1 if form.is_compact else 3
+            return count, "f = q(u) for the symplectic products u of three vectors of R^4, in R^3 with its form q"
+    return None
+
+
+SIGNATURES = {(14, 14, 7): (7, 0), (14, 6, 7): (4, 3), (21, 21, 8): (8, 0), (21, 9, 8): (4, 4)}
+"""Signatures of the forms that g2 and spin(7) preserve, by (dimension, that of a maximal compact subalgebra, m)."""
+
+
+def _of_simple(form: RealForm, d: int, degree: int) -> tuple[int, str] | None:
+    """The number of open orbits of a simple L0 of this real form with this degree of f, for known f."""
+    r, key = degree, (form.name, d)
+    jordan = {
+        (f"sl({r},R)", r * (r + 1) // 2): "symmetric", (f"sl({r},C)", r * r): "complex Hermitian",
+        (f"sl({r},H)", r * (2 * r - 1)): "quaternionic Hermitian", ("e6(-26)", 27): "octonionic Hermitian",
+    }.get(key)  # fmt: skip
+    if jordan and (r == 3 or form.type != "E6"):
+        return r + 1, f"f is the determinant of {jordan} {r} x {r} matrices, and the signatures number the orbits"
+    if key == (f"sl({2 * r},R)", comb(2 * r, 2)):
+        return 2, f"f is the Pfaffian of skew-symmetric {2 * r} x {2 * r} matrices, and it has two signs"
+    if r % 2 == 0 and key == (f"sl({r // 2},H)", comb(r + 1, 2)):
+        return 1, "skew-Hermitian forms over H that are not degenerate are equivalent"
+    if r == 4 and key == ("sl(2,R)", 4):
+        return 2, "f is the discriminant of binary cubics: three real roots or one"
+    if r == 4 and key == ("sl(6,R)", 20):
+        return 2, "f has two signs on three-forms of R^6, sums of two real or of two conjugate decomposable ones"
+    return None
+
+
+def frames(n: int, p: int, q: int) -> int:
+    """The number of components of the frames of n vectors of R^(p,q) whose Gram determinant is not 0.
+
+    The frames whose Gram matrix has the signature (a, b) are one orbit of GL(n) x O(p,q). The stabilizer is
+    O(a, b) x O(p - a, q - b). Its components and those of the group are groups of signs (det on R^n, on positive and on
+    negative vectors of R^(p,q)), and the orbit has as many components as the quotient has elements.
+    """
+    count = 0
+    for a in range(max(0, n - q), min(n, p) + 1):
+        b = n - a
+        reached = {0}  # signs as bits
+        for generator, occurs in ((0b110, a > 0), (0b101, b > 0), (0b010, p > a), (0b001, q > b)):
+            reached |= {x ^ generator for x in reached if occurs}
+        count += 2 ** (1 + (p > 0) + (q > 0)) // len(reached)
+    return count
+
+
+def _is_norm_of_quadratic_form(reduced: Sequence[ExactMatrix], commuting: Sequence[ExactMatrix], d: int) -> bool:
+    """Whether L0 = S + R J for a complex structure J, and S preserves a complex quadratic form of rank at least 3."""
+    (j,) = traceless(commuting, d, QQ)
+    norm = (j @ j)[0, 0]
+    if norm >= 0 or j @ j != QQ.identity(d).scale(norm) or all((a @ j).trace() == 0 for a in reduced):
+        return False
+    inside = [combination([a, j], [1, -(a @ j).trace() / (norm * d)]) for a in reduced]
+    forms = invariant_forms(inside, d, QQ).symmetric
+    return any((c := f @ j + j.T @ f).rank() > 4 and c @ j == j.T @ c for f in forms)
 
 
 def _is_complex(pair: Pair) -> bool:
@@ -430,11 +527,7 @@ def _is_complex(pair: Pair) -> bool:
 
 def _complex_structures(reduced: Sequence[ExactMatrix], d: int) -> Iterator[ExactMatrix]:
     """Matrices J that commute with L0, J^2 a negative scalar: in the center of L0, or in a commutant of dimension 2."""
-    rng = random.Random(d)
-    probes = [combination(reduced, [rng.randint(-9, 9) for _ in reduced]) for _ in range(2)] if reduced else []
-    rows = [QQ.stack_columns([(a @ b - b @ a).reshape(1, d * d) for b in probes], 1) for a in reduced]
-    # what commutes with two random elements
-    candidates = [combination(reduced, c) for c in QQ.stack_rows(rows, 2 * d * d).T.null_space().to_rows()]
+    candidates = central_candidates(reduced, d, QQ)
     commuting = commutant(reduced, d, QQ)
     if len(commuting) == 2:
         candidates += [c - QQ.identity(d).scale(c.trace() / d) for c in commuting]
@@ -445,6 +538,14 @@ def _complex_structures(reduced: Sequence[ExactMatrix], d: int) -> Iterator[Exac
             yield j
 
 
+def central_candidates(reduced: Sequence[ExactMatrix], d: int, over: ExactField) -> list[ExactMatrix]:
+    """A basis of the elements of L0 that commute with two random ones; the center is in their span."""
+    rng = random.Random(d)
+    probes = [combination(reduced, [rng.randint(-9, 9) for _ in reduced]) for _ in range(2)] if reduced else []
+    rows = [over.stack_columns([(a @ b - b @ a).reshape(1, d * d) for b in probes], 1) for a in reduced]
+    return [combination(reduced, c) for c in over.stack_rows(rows, 2 * d * d).T.null_space().to_rows()]
+
+
 def _rank(matrices: Sequence[ExactMatrix]) -> int:
     """The dimension of the span."""
     size = matrices[0].nrows * matrices[0].ncols if matrices else 0
@@ -452,25 +553,87 @@ def _rank(matrices: Sequence[ExactMatrix]) -> int:
 
 
 def _of_factors(pair: Pair, degree: int) -> int:
-    if pair.dimension > MAX_DIMENSION:
+    if pair.dimension > MAX_COUNTED:
         raise UndecidedError(
             f"the components of the complement of the relative invariant, of degree {degree}, are not counted: it is "
-            f"computed up to dimension {MAX_DIMENSION} of g/h"
+            f"computed up to dimension {MAX_COUNTED} of g/h"
         )
-    invariant = relative_invariant(pair)
+    invariant = relative_invariant(pair, MAX_COUNTED)
     factors = () if invariant is None else invariant.factors
-    if any(int(p.total_degree()) > 2 for p in factors):
+    if (count := _signed_components(factors, pair.dimension)) is None:
         raise UndecidedError(
             f"the components of the complement of the relative invariant are not counted: its irreducible factors have "
             f"the degrees {', '.join(sorted(str(p.total_degree()) for p in factors))}"
         )
-    matrices = [_form(p, pair.dimension) for p in factors]
-    if QQ.stack_rows(matrices, pair.dimension).rank() != sum(m.rank() for m in matrices):
-        raise UndecidedError(
-            "the components of the complement of the relative invariant are not counted: its factors, of degree 1 and "
-            "2, have variables in common"
-        )
-    return prod(2 if int(p.total_degree()) == 1 else _components(m) for p, m in zip(factors, matrices, strict=True))
+    return count
+
+
+# The components of the set where none of some irreducible polynomials vanishes.  Let Y be a space of directions y
+# along which all polynomials but p are constant and p is affine, p(x + y) = p(x) + c(x) y.  On both sides p > 0 and p
+# < 0 the fibers over V/Y are half spaces if c is not 0, and all of Y or empty if c is 0.  So the components are twice
+# those of the image, and those of the image are those for the other polynomials if c is 0 in codimension 2 only,
+# where these are not 0.
+
+MAX_COUNTED = 10  # dimension of g/h for minors in the count of components
+
+
+def _signed_components(factors: Sequence[Any], d: int) -> int | None:
+    """The number of components of the set where no factor vanishes; None if no rule applies."""
+    for place, p in enumerate(factors):
+        others = [*factors[:place], *factors[place + 1 :]]
+        if _is_affine_over(p, others, d) and (count := _signed_components(others, d)) is not None:
+            return 2 * count
+    if any(int(p.total_degree()) > 2 for p in factors):
+        return None
+    matrices = [_form(p, d) for p in factors]
+    if QQ.stack_rows(matrices, d).rank() == sum(m.rank() for m in matrices):
+        return prod(_components(m) if int(p.total_degree()) == 2 else 2 for p, m in zip(factors, matrices, strict=True))
+    linear, quadratic = ([m for p, m in zip(factors, matrices, strict=True) if p.total_degree() == k] for k in (1, 2))
+    return 2 * _affine_components(linear[0], quadratic[0]) if len(linear) == len(quadratic) == 1 else None
+
+
+def _is_affine_over(p: Any, others: Sequence[Any], d: int) -> bool:
+    """Whether there is a space Y as above."""
+    slopes = [
+        {(k, *e): c for k, o in enumerate(others) for e, c in o.derivative(i).to_dict().items()} for i in range(d)
+    ]
+    terms = sorted({term for slope in slopes for term in slope})
+    constant = QQ.matrix([[slope.get(term, QQ.zero) for term in terms] for slope in slopes], (d, len(terms)))
+    chosen: list[list[Scalar]] = []
+    along: list[Any] = []
+    for y in constant.left_null_space().to_rows() if terms else QQ.identity(d).to_rows():
+        slope = _derivative(p, y)
+        if slope.is_zero() or any(not _derivative(slope, z).is_zero() for z in [*chosen, y]):
+            continue
+        chosen.append(y)
+        along.append(slope)
+    if not along:
+        return False
+    common = along[0]
+    for slope in along[1:]:
+        common = common.gcd(slope)
+    units = [o / o.leading_coefficient() for o in others]
+    return all(factor / factor.leading_coefficient() in units for factor, _ in common.factor()[1])
+
+
+def _derivative(p: Any, y: Sequence[Scalar]) -> Any:
+    """The derivative of a polynomial in a direction."""
+    return sum((c * p.derivative(i) for i, c in enumerate(y) if c != 0), 0 * p)
+
+
+def _affine_components(linear: ExactMatrix, q: ExactMatrix) -> int:
+    """The number of components of q != 0 on the affine hyperplane where a linear form is 1."""
+    kernel = linear.null_space()
+    v = linear.scale(1 / (linear @ linear.T)[0, 0])  # the linear form is 1 at v
+    a, b = kernel @ q @ kernel.T, kernel @ q @ v.T
+    if QQ.stack_columns([a, b], a.nrows).rank() > a.rank():
+        return 2  # q = 0 is the graph of a function
+    center = v - a.solve(b).T @ kernel
+    level = (center @ q @ center.T)[0, 0]
+    positive, negative, _ = a.signature()
+    if level == 0:
+        return _components(a)
+    return 1 + {0: 0, 1: 2}.get(negative if level > 0 else positive, 1)  # the side of the critical point is star-shaped
 
 
 def _form(polynomial: Polynomial, d: int) -> ExactMatrix:

@@ -6,7 +6,7 @@ import random
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import comb
-from typing import final
+from typing import NamedTuple, final
 
 import numpy as np
 import numpy.typing as npt
@@ -77,31 +77,71 @@ def _by_pivots(columns: Array, bounds: Array) -> IntegerArray:
     return ranks
 
 
-# The generic rank of x -> [A_1 x, ..., A_m x] for a Lie algebra L of matrices with basis A_i: the orbit dimension.
+# The generic rank of x -> [A_1 x, ..., A_m x] for a Lie algebra L of matrices that is spanned by A_i: the orbit
+# dimension.
 #
-# One x with a large rank is a lower bound.  The upper bound comes from a slice.  Let the rank be r at x0, and N a
-# complement of L x0 in V.  The map (g, n) -> g (x0 + n) has the differential L + N -> V, (A, n) -> A x0 + n, at
-# (1, 0), which is onto.  So the orbits of the points x0 + n contain a neighborhood of x0, and the rank is constant on
-# orbits.  Hence the generic rank is r if and only if the rank is at most r at x0 + n for all n in N.
+# One x with a large rank is a lower bound.  The upper bound comes from a slice.  Let W be a complement of L x0 in V.
+# The map (g, w) -> g (x0 + w) has the differential L + W -> V, (A, w) -> A x0 + w, at (1, 0), which is onto.  So the
+# orbits of the points x0 + w contain a neighborhood of x0, and the rank is constant on orbits.  Hence a bound of the
+# rank at x0 + w for all w in W is a bound everywhere.
 #
-# Let s be the stabilizer of x0 in L.  If the vectors that s annihilates contain a complement N, the rank at x0 + n is
-# at most dim L - dim s = r.  This is so at generic points if the group of L is reductive and its generic orbits are
-# closed, in particular if it preserves a definite form up to scale, and for symmetric pairs.
+# Let k independent combinations of the A_i annihilate x0 and W.  Then the rank is at most m - k at x0 + w.  With x0 =
+# 0, W = V and the combinations that are zero this bound is dim L.  With all combinations that annihilate a generic x0
+# it is the rank r at x0, if the vectors that they annihilate contain a complement W.  This is so if the group of L is
+# reductive and its generic orbits are closed, in particular if it preserves a definite form up to scale, and for
+# symmetric pairs.
 #
-# In other cases, the minors of order r + 1 are polynomials of degree at most r + 1 in the d - r coordinates of n.  They
+# In other cases, the minors of order r + 1 are polynomials of degree at most r + 1 in the d - r coordinates of w.  They
 # vanish if they vanish at the points whose coordinates are the nodes t_i with indices of sum at most r + 1, which are
 # finitely many.
 
 MAX_POINTS = 20_000
 
 
-def point_of_higher_rank(forms: LinearForms, point: Sequence[Scalar], rank: int) -> list[Scalar] | None:
-    """A point at which the rank is higher than at this one, or None, which proves that the rank is generic."""
-    matrix = forms.at(point)
-    if rank == min(matrix.shape) or _is_principal(forms, matrix):
-        return None
-    pivots = set(matrix.T.echelon()[1])
-    free = [i for i in range(matrix.nrows) if i not in pivots]  # unit vectors that span a complement of L x0
+class RankProof(NamedTuple):
+    """A proof that no x has a rank above `rank`: a slice x0 + W, with `directions` a basis of W in its rows.
+
+    The rows of `stabilizer` are coefficients over the A_i of combinations that annihilate x0 and W; None stands for
+    ranks at the points of a lattice.
+    """
+
+    rank: int
+    point: list[Scalar]
+    directions: ExactMatrix
+    stabilizer: ExactMatrix | None
+
+
+def generic_rank(
+    forms: LinearForms, point: Sequence[Scalar], enough: int = 0
+) -> tuple[list[Scalar], int, RankProof | None]:
+    """A point, its rank, and the proof that no rank is above it; None if the rank is d or reaches `enough`.
+
+    With `enough` above 0 a proof that no rank reaches it is sufficient, so the rank of the proof may be above the one
+    at the point.
+    """
+    d, m = forms.shape
+    point, field = list(point), forms.field
+    if enough:
+        flat = field.stack_columns([part.T for part in forms.parts], m)  # row j holds the entries of A_j
+        if int(flat.modulo().rank()) < enough and flat.rank() < enough:
+            zero = flat.left_null_space()
+            return point, forms.at(point).rank(), RankProof(m - zero.nrows, [field.zero] * d, field.identity(d), zero)
+    while True:
+        matrix = forms.at(point)
+        rank = matrix.rank()
+        if rank == d or (enough and rank >= enough):
+            return point, rank, None
+        if (proof := _slice(forms, matrix, point, rank)) is not None:
+            return point, rank, proof
+        pivots = set(matrix.T.echelon()[1])
+        free = [i for i in range(d) if i not in pivots]  # unit vectors that span a complement of L x0
+        if (higher := _higher_point(forms, point, rank, free)) is None:
+            return point, rank, RankProof(rank, point, field.identity(d).select(rows=free), None)
+        point = higher
+
+
+def _higher_point(forms: LinearForms, point: Sequence[Scalar], rank: int, free: Sequence[int]) -> list[Scalar] | None:
+    """A point of the slice along the unit vectors `free` with a higher rank; None proves that there is none."""
     if (points := number_of_points(rank, len(point))) > MAX_POINTS:
         raise UndecidedError(
             f"the largest dimension found is {rank}; a proof that it is the generic one takes {points} ranks, the "
@@ -119,18 +159,22 @@ def point_of_higher_rank(forms: LinearForms, point: Sequence[Scalar], rank: int)
 
 
 def number_of_points(rank: int, dimension: int) -> int:
-    """The number of points at which `point_of_higher_rank` computes a rank."""
+    """The number of points of a lattice at which ranks prove that the generic rank is this one."""
     return comb(dimension + 1, rank + 1)
 
 
-def _is_principal(forms: LinearForms, matrix: ExactMatrix) -> bool:
-    """Whether the stabilizer s of the point x0 annihilates a complement of L x0, from the matrix at x0."""
-    stabilizer = matrix.null_space().T
-    d = matrix.nrows
-    # column i of an element of s is its value at the unit vector e_i
-    images = [(part @ stabilizer).T.reshape(1, stabilizer.ncols * d) for part in forms.parts]
-    fixed = forms.field.stack_rows(images, stabilizer.ncols * d).T.null_space()
-    return forms.field.stack_rows([matrix.T, fixed], d).rank() == d
+def _slice(forms: LinearForms, matrix: ExactMatrix, point: list[Scalar], rank: int) -> RankProof | None:
+    """The proof by the stabilizer of a point, from the matrix at the point; None if it fixes no complement."""
+    d, field = matrix.nrows, forms.field
+    stabilizer = matrix.null_space()
+    # column i of an element of the stabilizer is its value at the unit vector e_i
+    images = [(part @ stabilizer.T).T.reshape(1, stabilizer.nrows * d) for part in forms.parts]
+    fixed = field.stack_rows(images, stabilizer.nrows * d).T.null_space()
+    reached = matrix.T.row_space()
+    chosen = field.stack_rows([reached, fixed], d).T.echelon()[1]
+    if len(chosen) < d:
+        return None
+    return RankProof(rank, point, fixed.select(rows=[i - rank for i in chosen[rank:]]), stabilizer)
 
 
 def _lattice(nodes: Sequence[int], variables: int, degree: int) -> Iterator[tuple[int, ...]]:
@@ -249,19 +293,17 @@ def range_condition(pair: Pair, psi: VectorLike | None = None) -> RangeCondition
         return _at(pair, pair.algebra.row(psi), generic=False)
     if pair.dimension == 0:
         return _at(pair, pair.algebra.field.zeros(1, pair.algebra.dimension), generic=True)
-    best = _best_sample(pair)
-    if best.holds or not pair.field.exact:
-        return best
-    forms = pencil(pair)
-    if forms.shape[1] < pair.dimension:
-        message = f"it never holds: rho(h) + R has dimension {forms.shape[1]} < {pair.dimension}"
-        return _decided(best, False, message)
     try:
-        best = _raised(pair, forms, best)
+        best, proof = largest_rank(pair, enough=pair.dimension)
     except UndecidedError as error:
+        best = _best_sample(pair)
         return _decided(best, None, f"it fails at {SAMPLES} random points; not proved for all psi: {error}")
+    if proof is None:
+        return best
     message = f"it never holds: the rank over the rational functions of psi is {best.rank}"
-    return best if best.holds else _decided(best, False, message)
+    if not any(proof.point):
+        message = f"it never holds: rho(h) + R has dimension {proof.rank} < {pair.dimension}"
+    return _decided(best, False, message)
 
 
 def orbit_dimension(pair: Pair) -> int:
@@ -294,17 +336,25 @@ def orbit_dimension(pair: Pair) -> int:
         )
     if pair.dimension == 0:
         return 0
-    return _raised(pair, pencil(pair), _best_sample(pair)).rank
+    return largest_rank(pair)[0].rank
 
 
-def _raised(pair: Pair, forms: LinearForms, best: RangeCondition) -> RangeCondition:
-    """The answer at a point where the rank is proved to be the generic one."""
+def largest_rank(pair: Pair, enough: int = 0) -> tuple[RangeCondition, RankProof | None]:
+    """The answer at a point of the largest rank, and the proof that no rank is above it or, with `enough`, reaches it.
+
+    The columns of the proof are those of 1 and of rho of the rows of ``subalgebra.quotient().subspace``. There is none
+    if the rank is d, or over floats.
+    """
+    best = _best_sample(pair)
+    if best.holds or not pair.field.exact:
+        return best, None
     data = pair.subalgebra.quotient()
-    point = (pair.algebra.row(best.psi) @ data.projection).row(0)
-    while (higher := point_of_higher_rank(forms, point, best.rank)) is not None:
-        point = higher
+    forms = _forms(pair, [pair.field.identity(pair.dimension), *pair.isotropy_matrices()])
+    start = (pair.algebra.row(best.psi) @ data.projection).row(0)
+    point, rank, proof = generic_rank(forms, start, enough)
+    if rank > best.rank:
         best = _at(pair, pair.field.matrix([point]) @ data.lift, generic=True)
-    return _decided(best, True, "one psi at which it holds proves it") if best.holds else best
+    return (_decided(best, True, "one psi at which it holds proves it") if best.holds else best), proof
 
 
 def pencil(pair: Pair) -> LinearForms:
@@ -318,8 +368,13 @@ def pencil(pair: Pair) -> LinearForms:
     matrices = [pair.field.identity(d), *pair.isotropy_matrices()]
     flat = pair.field.stack_rows([a.reshape(1, d * d) for a in matrices], d * d)
     chosen = [matrices[i] for i in flat.T.echelon()[1]]
-    # Column j of part i is A_j e_i.
-    return LinearForms([pair.field.stack_columns([a.select(columns=[i]) for a in chosen], d) for i in range(d)])
+    return _forms(pair, chosen)
+
+
+def _forms(pair: Pair, matrices: Sequence[Matrix]) -> LinearForms:
+    """The matrix [A_1 x, ..., A_m x]: column j of part i is A_j e_i."""
+    d = pair.dimension
+    return LinearForms([pair.field.stack_columns([a.select(columns=[i]) for a in matrices], d) for i in range(d)])
 
 
 def _at(pair: Pair, row: Matrix, *, generic: bool) -> RangeCondition:

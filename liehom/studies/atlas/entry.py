@@ -13,8 +13,9 @@ from liehom.exact.catalog.pairs import pair as named_pair
 from liehom.exact.fullness.certificate import Certificate
 from liehom.exact.fullness.checker.verify import verify_certificate
 from liehom.exact.fullness.decide import classify
+from liehom.exact.fullness.range_classification import classify_range
 from liehom.exact.fullness.verdict import Full, Verdict
-from liehom.exact.orbits.cone import invariant_degree, open_orbit_count
+from liehom.exact.orbits.cone import counted_open_orbits, invariant_degree
 from liehom.exact.orbits.range import orbit_dimension
 from liehom.exact.representations.core.pair import Pair
 
@@ -273,10 +274,11 @@ def facts(pair: Pair, verdict: Verdict, *, seconds: float = 60.0) -> dict[str, F
 
     ``"key"``, ``"row"`` and ``"space"`` are key, name and space of the row of a full pair in the classification, see
     `liehom.classify`, and None for other pairs. ``"range_condition"``: whether [h, eta] + R eta + h = g for generic
-    eta. ``"orbit_dimension"``: the dimension of [h, eta] + R eta in g/h for generic eta, see
-    `liehom.orbits.orbit_dimension`. ``"invariant_degree"``: see `liehom.orbits.invariant_degree`, None if the range
-    condition holds for no eta. ``"open_orbits"``: the number of open orbits on g/h, see
-    `liehom.orbits.open_orbit_count`. ``"missing"``: the reasons why facts are missing, by name. Missing facts are None.
+    eta, see `liehom.classify_range`. ``"orbit_dimension"``: the dimension of [h, eta] + R eta in g/h for generic eta,
+    see `liehom.orbits.orbit_dimension`. ``"invariant_degree"``: see `liehom.orbits.invariant_degree`, None if the
+    range condition holds for no eta. ``"open_orbits"``: the number of open orbits on g/h, see
+    `liehom.orbits.open_orbit_count`. ``"missing"``: the reasons why facts are missing, by name. Missing facts are
+    None.
 
     Parameters
     ----------
@@ -304,22 +306,30 @@ def facts(pair: Pair, verdict: Verdict, *, seconds: float = 60.0) -> dict[str, F
             missing[name] = str(error)
         return None
 
-    dimension = d if full else fact("orbit_dimension", orbit_dimension)
-    holds = None if dimension is None else dimension == d
+    holds = True if full else fact("range_condition", _generic)
+    dimension = d if holds else fact("orbit_dimension", orbit_dimension)
     degree = fact("invariant_degree", invariant_degree) if holds else None
     orbits = None if holds is None else 0
     if full:
         orbits = 2 if d == 1 else 1  # the connected group is transitive on rays
     elif holds:
-        orbits = fact("open_orbits", open_orbit_count)
+        orbits = fact("open_orbits", lambda pair: counted_open_orbits(pair, True)[0])
     if holds is None:
-        missing |= dict.fromkeys(("range_condition", "invariant_degree", "open_orbits"), missing["orbit_dimension"])
+        missing |= dict.fromkeys(("invariant_degree", "open_orbits"), missing["range_condition"])
     row = classify(pair, verdict) if isinstance(verdict, Full) else None
     return {
         "key": row and [value if isinstance(value, int | str | None) else str(value) for value in row.key],
         "row": row and row.name, "space": row and row.space, "range_condition": holds, "orbit_dimension": dimension,
         "invariant_degree": degree, "open_orbits": orbits, "missing": missing,
     }  # fmt: skip
+
+
+def _generic(pair: Pair) -> bool:
+    """Whether the range condition holds for generic eta; `UndecidedError` if that is undecided."""
+    result = classify_range(pair)
+    if result.generic is None:
+        raise UndecidedError(result.undecided)
+    return result.generic
 
 
 def _in(seconds: float, compute: Callable[[Pair], int | None], pair: Pair) -> int | None:

@@ -41,7 +41,7 @@ def test_full_pairs_have_their_row() -> None:
 
 
 def test_missing_facts_say_why() -> None:
-    pair = lh.pair("affine(S3(gl(2)))")
+    pair = lh.pair("so(5,3)/P{3,4}")
     found = facts_of(pair, lh.decide_fullness(pair))
     assert found["open_orbits"] is None and "degrees 4" in found["missing"]["open_orbits"]
     over = lh.Pair(pair.algebra.over(lh.number_field("sqrt(2)")), pair.subalgebra.rows())

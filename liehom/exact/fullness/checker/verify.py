@@ -9,8 +9,11 @@ defines the coordinates and checks that rho is a representation; `verify_roots` 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from itertools import combinations_with_replacement
+from math import comb
 from typing import Any
 
+from liehom.base.budget import in_time
 from liehom.base.errors import CertificateError
 from liehom.exact.fullness.certificate import Certificate
 from liehom.exact.fullness.checker.verify_pair import CheckedPair, PairData, check_pair, check_same_field
@@ -85,6 +88,114 @@ def _verify(pair: CheckedPair, certificate: Certificate) -> None:
             _verify_dominance(pair, certificate)
         case kind:
             raise CertificateError("kind", f"there is no check for the kind {kind!r}")
+
+
+def verify_range(pair: PairData, certificate: Certificate | Mapping[str, Any]) -> bool:
+    """Whether the range condition holds at generic eta, as a certificate proves; otherwise raises an error.
+
+    Parameters
+    ----------
+    pair : Pair
+        Over an exact field.
+    certificate : Certificate or its parsed JSON object
+        Of kind 'generic', 'slice' or 'lattice'.
+
+    Returns
+    -------
+    bool
+        True for the kind 'generic', False for the others.
+
+    Raises
+    ------
+    CertificateError
+        If a check fails; its attribute `check` is the name of the check.
+
+    Notes
+    -----
+    Let M(x) be the map (z, s) -> rho(z) x + s x from h + R to V, and m = dim h + 1. 'generic': the rank of M is d at
+    eta. It is then d outside the zeros of a minor, a proper algebraic set.
+
+    The other kinds prove that the rank is at most r < d everywhere. They have a point a and the rows W of `directions`,
+    with M(a) + span W = V. Let L be the image of h + R in gl(V). The map (g, w) -> g (a + w) is a submersion at (1, 0),
+    so the orbits of the points a + w fill an open set, and the rank is constant on orbits. So r bounds the rank
+    everywhere if it bounds it on a + span W.
+
+    * 'slice': the k rows of `stabilizer` are independent elements (z, s) of h + R that annihilate a and W. So the rank
+      is at most r = m - k at each a + w.
+    * 'lattice': W has d - r rows, and the rank is at most r at a + sum t_i w_i for all integers t_i >= 0 of sum at most
+      r + 1. The minors of order r + 1 are polynomials of degree at most r + 1 in t. A polynomial of this degree that
+      vanishes at these points is 0: by induction on the number of variables it vanishes for t_1 = 0, so it is t_1 times
+      a polynomial of lower degree, which vanishes at the points with t_1 >= 1, a lattice of lower degree.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> pair = lh.pair("so(3,1)/so(2,1)")
+    >>> verify_range(pair, Certificate("generic", {"eta": ["0", "0", "0", "0", "0", "1"]}))
+    True
+    >>> verify_range(pair, Certificate("generic", {"eta": ["1", "0", "0", "0", "0", "0"]}))
+    Traceback (most recent call last):
+    ...
+    liehom.base.errors.CertificateError: rank: [h, eta] + R eta has rank 0 of 3 in g/h
+    """
+    certificate = certificate.copied() if isinstance(certificate, Certificate) else Certificate.from_json(certificate)
+    checked = check_pair(pair)
+    check_same_field(checked.field, certificate.field)
+    return _verify_range(checked, certificate)
+
+
+def _verify_range(pair: CheckedPair, certificate: Certificate) -> bool:
+    n, d, kind = pair.dimension, pair.codimension, certificate.kind
+    _require(kind in ("generic", "slice", "lattice"), "kind", f"the kind {kind!r} is not about the range condition")
+    if kind == "generic":
+        rank = _images(pair, certificate.vector("eta", n)).rank()
+        _require(rank == d, "rank", f"[h, eta] + R eta has rank {rank} of {d} in g/h")
+        return True
+    a, w = certificate.vector("point", n), certificate.matrix("directions", None, n)
+    reached = pair.field.stack_rows([_images(pair, a), w @ pair.quotient], d).rank()
+    _require(reached == d, "slice", f"the orbit of the point and the directions span {reached} of {d} dimensions")
+    (_verify_stabilizer if kind == "slice" else _verify_lattice)(pair, certificate, a, w)
+    return False
+
+
+def _images(pair: CheckedPair, eta: list[Scalar]) -> ExactMatrix:
+    """Rows that span rho(h) x + R x, for x = eta mod h."""
+    k, d = len(pair.pivots), pair.codimension
+    x = pair.field.matrix([eta], (1, pair.dimension)) @ pair.quotient
+    return pair.field.stack_rows([x, (x @ _side_by_side(pair.isotropy, k, d)).reshape(k, d)] if k and d else [x], d)
+
+
+def _verify_stabilizer(pair: CheckedPair, certificate: Certificate, a: list[Scalar], w: ExactMatrix) -> None:
+    n, d, field = pair.dimension, pair.codimension, pair.field
+    stabilizer = certificate.matrix("stabilizer", None, n + 1)
+    k, bound = stabilizer.nrows, len(pair.pivots) + 1 - stabilizer.nrows
+    _require(bound < d, "bound", f"the rank is bounded by {bound}, which is not below {d}")
+    if not k:
+        return
+    _require(stabilizer.rank() == k, "stabilizer-independent", f"the {k} rows of stabilizer are linearly dependent")
+    elements, scalars = stabilizer.select(columns=range(n)), stabilizer.select(columns=[n])
+    _require(pair.in_h(elements), "stabilizer-in-h", "an element of stabilizer is not in h")
+    acting = elements.select(columns=pair.pivots) @ pair.isotropy
+    acting = acting + scalars @ field.identity(d).reshape(1, d * d)
+    points = field.stack_rows([field.matrix([a], (1, n)), w], n) @ pair.quotient
+    moved = points @ _side_by_side(acting, k, d)
+    _require(moved.is_zero(), "stabilizer", "an element of stabilizer does not annihilate the point or a direction")
+
+
+MAX_LATTICE = 20_000
+"""Largest number of points of a lattice."""
+
+
+def _verify_lattice(pair: CheckedPair, _: Certificate, a: list[Scalar], w: ExactMatrix) -> None:
+    d, rows = pair.codimension, w.to_rows()
+    r = d - len(rows)
+    _require(0 <= r < d, "bound", f"{len(rows)} directions are given, expected between 1 and {d}")
+    count = comb(d + 1, r + 1)
+    _require(count <= MAX_LATTICE, "lattice", f"the lattice has {count} points, the limit is {MAX_LATTICE}")
+    for places in combinations_with_replacement([*rows, [pair.field.zero] * pair.dimension], r + 1):
+        in_time()
+        rank = _images(pair, [sum(column, start=x) for x, *column in zip(a, *places, strict=True)]).rank()
+        _require(rank <= r, "lattice", f"the rank is {rank} at a point of the lattice, expected at most {r}")
 
 
 def _require(holds: bool, check: str, message: str) -> None:

@@ -392,7 +392,42 @@ KEYS: dict[str, Callable[[Patch], Any]] = {
     "key: elements that only seem central": with_one_choice,
     "key: another Killing form": with_another_killing_form,
 }
-FORGERIES = CERTIFICATES | KEYS
+
+
+# -- the range condition at generic eta --------------------------------------------------------------------
+def about_range(pair: Any, kind: str, **fields: Any) -> Callable[[Patch], Any]:
+    return lambda _: verify.verify_range(pair, Certificate(kind, fields))
+
+
+def about_range_of_another_kind(_: Patch) -> Any:
+    certificate = Certificate("lattice", {"point": ["1", "0"], "directions": [["0", "1"]]})
+    object.__setattr__(certificate, "kind", "oracle")
+    return verify._verify_range(verify_pair.check_pair(FLAT), certificate)
+
+
+def with_a_small_limit(patch: Patch) -> Any:
+    patch.setattr(verify, "MAX_LATTICE", 2)
+    return about_range(FLAT, "lattice", point=["1", "0"], directions=[["0", "1"]])(patch)
+
+
+TURN = affine([[[0, 1], [-1, 0]]])
+PLANE = {"point": ["0"] * 3, "directions": [unit(3, 1), unit(3, 2)]}
+MATRICES = {"point": ["0"] * 6, "directions": [unit(6, 4), unit(6, 5)]}
+RANGE: dict[str, Callable[[Patch], Any]] = {
+    "range: another kind": about_range_of_another_kind,
+    "generic: a point of lower rank": about_range(FLAT, "generic", eta=["1", "0"]),
+    "slice: directions that do not span": about_range(
+        LINEAR, "slice", point=["0"] * 6, directions=[], stabilizer=[unit(7, i) for i in range(4)]
+    ),
+    "slice: a stabilizer that is too small": about_range(LINEAR, "slice", **MATRICES, stabilizer=[]),
+    "slice: elements that are dependent": about_range(LINEAR, "slice", **MATRICES, stabilizer=[["0"] * 7] * 4),
+    "slice: an element outside h": about_range(TURN, "slice", **PLANE, stabilizer=[unit(4, 1)]),
+    "slice: an element that moves": about_range(TURN, "slice", **PLANE, stabilizer=[unit(4, 0)]),
+    "lattice: no directions": about_range(TURN, "lattice", point=unit(3, 1), directions=[]),
+    "lattice: too many points": with_a_small_limit,
+    "lattice: a higher rank": about_range(TURN, "lattice", point=unit(3, 1), directions=[unit(3, 2)]),
+}
+FORGERIES = CERTIFICATES | KEYS | RANGE
 NEEDED = {
     "dominance: a basis of rho(h) with a row more",
     "commutant: rows that are no complement", "commutant: a point", "dominance: a point",
