@@ -261,7 +261,7 @@ class Watch:
     """The parts of the psi from which code was compiled, and one value of it, compared in later calls."""
 
     def __init__(self, field: GeneratorField, start: Values, t: Real | np.floating[Any]) -> None:
-        source = source_of(field)
+        self.field, source = field, source_of(field)
         rows = [(read, x, *_looked(x, is_leaf)) for _, read, x, is_leaf in _walk("", lambda: source, {})]
         self._read: Read = bytes  # returns the value
         if callable(source) and not is_traced(start) and not is_traced(t):

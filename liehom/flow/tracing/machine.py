@@ -24,7 +24,7 @@ from liehom.flow.tracing.array import Traced
 from liehom.flow.tracing.graph import Expr, LaneConstant, RunConstant, TrajectoryConstant
 from liehom.flow.tracing.llvm_text import LIBM
 from liehom.flow.tracing.loop import StepGraph
-from liehom.flow.tracing.run_text import FIELDS, Constant, run_module, state_names
+from liehom.flow.tracing.run_text import FIELDS, FLOATS, Constant, run_module, state_names
 
 Engine: TypeAlias = Any
 """An execution engine of llvmlite, which has no types."""
@@ -215,15 +215,20 @@ class Kernel:
         argument = np.zeros(len(FIELDS), dtype=np.int64)
         count = state.shape[1]
         for name, value in {"state": state, "lanes": count, "last": count // self.width, **fields}.items():
-            if name == "origin":
-                argument.view(np.float64)[PLACES[name]] = value
-            elif value is not None:
-                argument[PLACES[name]] = value.ctypes.data if isinstance(value, np.ndarray) else value
+            set_field(argument, name, value)
         return argument
 
     def run_values(self, given: Mapping[str, float]) -> npt.NDArray[np.float64]:
         """The numbers of a run as an array, from their values by name; 0 by default."""
         return np.array([given.get(name, 0.0) for name in self.run_constants] or [0.0])
+
+
+def set_field(argument: npt.NDArray[np.int64], name: str, value: npt.NDArray[Any] | float | None) -> None:
+    """Set a field of an argument; the memory of an array must live as long as the argument is used."""
+    if name in FLOATS:
+        argument.view(np.float64)[PLACES[name]] = value
+    elif value is not None:
+        argument[PLACES[name]] = value.ctypes.data if isinstance(value, np.ndarray) else value
 
 
 def _on_tracers(function: TrajectoryConstant, graph: StepGraph) -> Expr | None:
