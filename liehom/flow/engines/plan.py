@@ -39,7 +39,7 @@ from liehom.flow.run.records import StepStatistics, bounds_of
 from liehom.flow.run.solution import DenseSolution, Solution, solution_of
 from liehom.flow.steps.step import Generator, Step
 from liehom.flow.tracing.graph import LaneConstant
-from liehom.flow.tracing.machine import Kernel, padded, set_field
+from liehom.flow.tracing.machine import PLACES, Kernel, padded
 
 # What a call gives, as numbers of Python and arrays of floats. Lists, tuples, integers and numbers of numpy are the
 # same call. Whatever is unusual, or not right, has no such form: `Propagator` looks at it closely.
@@ -66,6 +66,7 @@ class Call(NamedTuple):
     looks: int | None = None
 
 
+ABSENT = frozenset(["dt", "t_eval", "events", "checkpoint", "first_step"])
 NUMBERS = frozenset(["rtol", "atol", "max_step", "min_step", "first_step", "max_steps"])
 
 
@@ -82,9 +83,13 @@ def call_of(t_span: object, y0: object, options: Mapping[str, Any]) -> Call | No
     for name, value in options.items():
         if name in NUMBERS and type(value) in KINDS:
             numbers[name] = float(value)
+        elif name == "dt" and type(value) in KINDS:
+            numbers[name] = dt = float(value)
+            if not 8 * EPS * max(abs(begin), abs(end)) <= dt < inf:
+                return None
         elif name == "dt" and value is not None:
-            numbers[name] = dt = _size(value, points.shape[:-1])
-            if dt is None or not 8 * EPS * max(abs(begin), abs(end)) <= np.min(dt) <= np.max(dt) < inf:
+            numbers[name] = sizes = _sizes(value, points.shape[:-1])
+            if sizes is None or not 8 * EPS * max(abs(begin), abs(end)) <= np.min(sizes) <= np.max(sizes) < inf:
                 return None
         elif name == "t_eval" and value is not None:
             numbers["times"] = times = _floats("t_eval", value)
@@ -94,14 +99,14 @@ def call_of(t_span: object, y0: object, options: Mapping[str, Any]) -> Call | No
             numbers[name] = value
         elif name == "dense_output" and type(value) is bool:
             numbers["dense"] = value
-        elif not (value is None and name in ("dt", "t_eval", "events", "checkpoint", "first_step")) and not (
-            name == "progress" and value is False
-        ):
+        elif (value is not None or name not in ABSENT) and (name != "progress" or value is not False):
             return None
     call = Call(points, begin, end, **numbers)
-    rtol, atol, most, least, first, steps = call[6:12]
-    good = rtol >= 0 and atol >= 0 and rtol + atol > 0 and 0 <= least <= most and most > 0 and steps >= 1
-    return call if good and (first is None or first > 0) else None
+    if not NUMBERS.isdisjoint(numbers):
+        rtol, atol, most, least, first, steps = call[6:12]
+        good = rtol >= 0 and atol >= 0 and rtol + atol > 0 and 0 <= least <= most and most > 0 and steps >= 1
+        return call if good and (first is None or first > 0) else None
+    return call
 
 
 def _floats(what: str, given: object) -> Array | None:
@@ -117,10 +122,8 @@ def _floats(what: str, given: object) -> Array | None:
     return value.astype(np.float64) if value.dtype.kind in "iu" else None
 
 
-def _size(value: object, shape: tuple[int, ...]) -> float | Array | None:
-    """A step size, or those of trajectories if they differ."""
-    if type(value) in KINDS:
-        return float(value)  # type: ignore[arg-type]
+def _sizes(value: object, shape: tuple[int, ...]) -> float | Array | None:
+    """The step sizes of trajectories, or one size if they agree."""
     sizes = _floats("dt", value)
     if sizes is None or not sizes.size or sizes.shape not in ((), shape):
         return None
@@ -198,34 +201,34 @@ def ranked(count: int) -> IntegerArray:
 CHUNK = 16_384  # number of lanes, at most, that are copied in, run, and copied out at once
 SMALL = 64  # number of lanes up to which memory is kept from call to call
 ROOM = 64  # rows of the path, at first, of steps whose number is not known
+LAST_STOP, FIRST_STOP, ORIGIN, END_STEP, TOTAL, STEP_SIZE = (
+    PLACES[name] for name in ("last_stop", "first_stop", "origin", "end", "total", "step_size")
+)
 TROUBLE = frozenset(["unkept", "failed", "near", "short", "conservation_short", "conservation_missed"])
 """Numbers of steps that are 0, or -inf, if the steps are as they should be."""
 
 
 @final
 class Memory:
-    """Memory of a kernel for some lanes, and its argument."""
+    """Memory of a kernel for some lanes, and its argument as integers and as floats."""
 
     def __init__(self, kernel: Kernel, lanes: int, constants: Array) -> None:
         self.first: Array = kernel.packed(lanes, {"alive": 1.0, **lowest_numbers(kernel.graph)})
         self.state: Array = self.first.copy()
         self.start: Array = np.empty((kernel.graph.size, self.first.shape[1]))
-        rows: Array = np.ones((max(1, len(kernel.lane_constants)), self.first.shape[1]))
-        self.arrays: dict[str, Array] = {"rows": rows, "stops": np.zeros(0), "out": np.zeros(0), "path": np.zeros(0)}
-        self.argument: IntegerArray = kernel.argument(self.state, start=self.start, rows=rows, constants=constants)
-        self.address: int = self.argument.ctypes.data
+        self.rows: Array = np.ones((max(1, len(kernel.lane_constants)), self.first.shape[1]))
+        self.arrays: dict[str, Array] = dict.fromkeys(["stops", "out", "path"], np.zeros(0))
+        self.integers: IntegerArray = kernel.argument(self.state, start=self.start, rows=self.rows, constants=constants)
+        self.floats: Array = self.integers.view(np.float64)
+        self.address: int = self.integers.ctypes.data
 
-    def put(self, **fields: Array | float | None) -> None:
-        """Set fields of the argument."""
-        for name, value in fields.items():
-            set_field(self.argument, name, value)
-
-    def room(self, name: str, *shape: int) -> Array:
-        """The array of a name, with at least as many rows as a shape."""
-        if len(self.arrays[name]) < shape[0]:
-            self.arrays[name] = np.empty(shape)
-            self.put(**{name: self.arrays[name]})
-        return self.arrays[name]
+    def room(self, name: str, rows: int, *shape: int) -> Array:
+        """The array of a name, with at least as many rows."""
+        array = self.arrays[name]
+        if len(array) < rows:
+            array = self.arrays[name] = np.empty((rows, *shape))
+            self.integers[PLACES[name]] = array.ctypes.data
+        return array
 
 
 class Piece(NamedTuple):
@@ -234,6 +237,19 @@ class Piece(NamedTuple):
     lanes: slice
     path: Array | None  # (j, N + 2, L): points, times and signed sizes, without gaps
     numbers: Array
+
+
+class Task(NamedTuple):
+    """What a call asks of a kernel."""
+
+    call: Call
+    points: Array  # (L, N)
+    values: Mapping[str, Any]  # the constants of the run, by name
+    direction: float
+    total: int  # number of steps in lockstep
+    starts: int  # number of output times at the begin
+    keeps: bool  # whether all steps are kept
+    y: Array | None  # (L, N, k): points at output times
 
 
 @final
@@ -248,13 +264,12 @@ class Plan:
         self.lockstep = graph.reached is None
         recorded = {f"e{i}": name for i, name in enumerate([*graph.largest, *graph.summed])}
         self.trouble = [self.place[e] for e, name in recorded.items() if name in TROUBLE]
-        self.kept = [name for name in ("count", "tries", *recorded) if name in self.place]
-        self.kept_rows = [self.place[name] for name in self.kept]
-        self.given = [(name, self.place[name]) for name in ("count", "t", "stop", "kept", "h") if name in self.place]
-        if not self.lockstep:
-            self.given = [(name, i) for name, i in self.given if name != "count"]
+        small = self.lanes <= SMALL
+        self.kept = [x for x in kernel.names if small or x in recorded or x in ("count", "tries")]
+        self.kept_rows: Any = slice(None) if small else [self.place[name] for name in self.kept]
+        self.given = [(name, i) for name, i in self.place.items() if name in ("t", "stop", "kept", "h")]
         self.constants: Array = np.zeros(max(1, len(kernel.run_constants)))
-        self.memory = Memory(kernel, self.lanes, self.constants) if self.lanes <= SMALL else None
+        self.memory = Memory(kernel, self.lanes, self.constants) if small else None
         self.is_judged, self.rows, self.lock = problem.options.dt is not None, ROOM, threading.Lock()
 
     def __call__(self, call: Call, args: Pytree = None) -> Solution | None:
@@ -279,45 +294,48 @@ class Plan:
         chunk = self._chunk(total if self.lockstep or not keeps else self.rows, keeps=keeps)
         if chunk < 1:
             return None
-        values = self._take(call, args, direction, rest)
         y = None if times is None else np.empty((self.lanes, self.n, len(times)))
         if y is not None and starts:
             y[:, :, 0] = points
-
-        def made(lanes: slice) -> Piece | None:
-            count = lanes.stop - lanes.start
-            memory = self.memory or Memory(self.kernel, count, self.constants)
-            for row, number in zip(memory.arrays["rows"], self.kernel.lane_constants, strict=False):
-                row[:count] = values[number.name][lanes] if isinstance(number, LaneConstant) else number(points[lanes])
-            parts = self._run(memory, call, points[lanes], (lanes, starts, total), keeps=keeps)
-            state = memory.state
-            if parts is None or (self.trouble and (state[self.trouble, :count] > 0).any()):
-                return None
-            if y is not None and len(y[0, 0]) > starts:
-                y[lanes, :, starts:] = memory.arrays["out"][starts : y.shape[2], :, :count].transpose(2, 1, 0)
-            return Piece(lanes, self._path(parts, count) if keeps else None, state[self.kept_rows, :count])
-
+        task = Task(call, points, self._take(call, args, direction, rest), direction, total, starts, keeps, y)
         if chunk >= self.lanes:
-            pieces = [made(slice(0, self.lanes))]
+            pieces = [self._made(task, slice(0, self.lanes))]
         else:
             cuts = pairwise([*range(0, self.lanes, chunk), self.lanes])
-            pieces = in_threads(made, [slice(a, b) for a, b in cuts])
+            pieces = in_threads(lambda lanes: self._made(task, lanes), [slice(a, b) for a, b in cuts])
         good = [piece for piece in pieces if piece is not None]
         if len(good) < len(pieces):
             return None
         numbers = good[0].numbers if len(good) == 1 else np.concatenate([x.numbers for x in good], axis=1)
-        if not self.is_judged and numbers[0].max() >= MIN_STEPS:
+        if not self.is_judged and numbers[self.kept.index("count")].max() >= MIN_STEPS:
             self.is_judged = True  # an ordinary call says whether the field is stiff
             return None
         path = _joined(good, points, begin) if keeps else None
         t, result = (path[0], path[1]) if path is not None and y is None else (times, y)  # type: ignore[assignment]
         t = t.copy() if times is not None else t[0] if not self.shape else t.reshape(*self.shape, t.shape[-1])
+        result = result[0] if not self.shape else result.reshape(*self.shape, self.n, result.shape[-1])
+        # what the other entries need is copied: points may change
         first = points[ranked(self.lanes)] if self.step.uses_isotropy else points[:0]
-        start = np.array(points) if call.dense else points
-        return solution_of(
-            t, result.reshape(*self.shape, self.n, result.shape[-1]), END,
-            lambda: self._others(call, args, numbers, path, first, start),
-        )  # fmt: skip
+        start = np.array(points) if keeps and y is not None else None
+        return solution_of(t, result, END, lambda: self._others(call, args, numbers, path, (first, start)))
+
+    def _made(self, task: Task, lanes: slice) -> Piece | None:
+        """Run the kernel for some lanes; None if one of them fails."""
+        points, y = task.points[lanes], task.y
+        count, memory = len(points), self.memory
+        if memory is None:
+            memory = Memory(self.kernel, count, self.constants)
+        for row, number in zip(memory.rows, self.kernel.lane_constants, strict=False):
+            row[:count] = task.values[number.name][lanes] if isinstance(number, LaneConstant) else number(points)
+        parts = self._run(memory, task, points, lanes)
+        state = memory.state
+        if parts is None or (self.trouble and (state[self.trouble, :count] > 0).any()):
+            return None
+        if y is not None and y.shape[2] > task.starts:
+            out = memory.arrays["out"]
+            y[lanes, :, task.starts :] = out[task.starts : y.shape[2], :, :count].transpose(2, 1, 0)
+        numbers = state[:, :count].copy() if self.memory is not None else state[self.kept_rows, :count]
+        return Piece(lanes, self._path(parts, count) if task.keeps else None, numbers)
 
     def _chunk(self, rows: int, *, keeps: bool) -> int:
         """Number of lanes that are run at once, whole blocks; 0 if even one block is too long for one call."""
@@ -344,45 +362,51 @@ class Plan:
         self.constants[: len(names)] = [values.get(name, 0.0) for name in names]
         return values
 
-    def _run(
-        self, memory: Memory, call: Call, points: Array, place: tuple[slice, int, int], *, keeps: bool
-    ) -> list[Array] | None:
+    def _run(self, memory: Memory, task: Task, points: Array, lanes: slice) -> list[Array] | None:
         """Run the kernel for some points from begin to end; the parts of the path, None if a lane fails."""
-        (lanes, starts, total), n, count, state = place, self.n, len(points), memory.state
+        call, n, count, state = task.call, self.n, len(points), memory.state
+        integers, floats, width = memory.integers, memory.floats, state.shape[1]
         state[:] = memory.first
         state[:n, :count] = points.T
-        times: Any = () if call.times is None else call.times
-        last = len(times) - int(len(times) > 0 and times[-1] == call.end)
+        times: Any = call.times
+        last = 0 if times is None else len(times) - int(times[-1] == call.end)
         stops = memory.room("stops", last + 2)
-        stops[:last], stops[last : last + 2] = times[:last], call.end
-        memory.room("out", last + 2, n, state.shape[1])
-        memory.put(last_stop=last, origin=call.begin, first_stop=starts)
-        dt: Any = call.dt
-        if dt is not None:
-            dt = (1.0 if call.end > call.begin else -1.0) * (dt if type(dt) is float else dt.reshape(-1)[lanes])
-        size = call.first_step or call.min_step or inf if dt is None else dt
-        given = {"count": total, "t": call.begin, "stop": starts, "kept": starts, "h": size}
-        for name, i in self.given:
-            state[i, :count] = given[name]
-        if count < state.shape[1]:
+        if last:
+            stops[:last] = times[:last]
+        stops[last : last + 2] = call.end
+        memory.room("out", last + 2, n, width)
+        integers[LAST_STOP], integers[FIRST_STOP], floats[ORIGIN] = last, task.starts, call.begin
+        size: Any = call.dt
+        if size is None:
+            size = call.first_step or call.min_step or inf
+        else:
+            size = task.direction * (size if type(size) is float else size.reshape(-1)[lanes])
+        if self.lockstep:
+            state[self.place["count"]] = task.total
+            integers[END_STEP], integers[TOTAL], floats[STEP_SIZE] = task.total, task.total, size
+        else:
+            given = {"t": call.begin, "stop": task.starts, "kept": task.starts, "h": size}
+            for name, i in self.given:
+                state[i, :count] = given[name]
+        if count < width:
             state[:, count:] = state[:, :1]
         memory.start[:] = state[:n]
         if not self.lockstep:
-            return self._to_the_end(memory, count, call.max_steps, keeps=keeps)
-        memory.put(end=total, total=total, step_size=dt)
-        parts = [memory.room("path", total, n + 2, state.shape[1])[:total]] if keeps else []
+            return self._to_the_end(memory, count, call.max_steps, keeps=task.keeps)
+        parts = [memory.room("path", task.total, n + 2, width)[: task.total]] if task.keeps else []
         self.kernel.run(memory.address)
-        return parts if state[self.place["alive"], :count].min() > 0 else None
+        alive = state[self.place["alive"]]
+        return parts if (alive[0] if count == 1 else alive[:count].min()) > 0 else None
 
     def _to_the_end(self, memory: Memory, count: int, most: float, *, keeps: bool) -> list[Array] | None:
         """Run the kernel until all lanes are at the end, by steps of their own sizes."""
         parts, width, row = list[Array](), memory.state.shape[1], self.n + 1
         alive, taken = (memory.state[self.place[name], :count] for name in ("alive", "count"))
-        memory.put(end=max(1, OPERATIONS_PER_CALL // (self.work * count)))
+        memory.integers[END_STEP] = max(1, OPERATIONS_PER_CALL // (self.work * count))
         while True:
             if keeps:
                 path = memory.room("path", self.rows, row + 1, width)
-                memory.put(end=len(path))
+                memory.integers[END_STEP] = len(path)
                 path[:, row] = 0.0
             self.kernel.run(memory.address)
             if keeps:
@@ -409,11 +433,11 @@ class Plan:
         return path
 
     def _others(
-        self, call: Call, args: Pytree, numbers: Array, path: tuple[Array, Array, Array] | None, points: Array,
-        start: Array,
+        self, call: Call, args: Pytree, numbers: Array, path: tuple[Array, Array, Array] | None,
+        starts: tuple[Array, Array | None],
     ) -> dict[str, object]:  # fmt: skip
         """The other entries of a solution, which are made when one of them is asked for."""
-        p, shape, graph = self.problem, self.shape, self.kernel.graph
+        p, shape, graph, (points, start) = self.problem, self.shape, self.kernel.graph, starts
         bound = p.field if args is None else p.field.with_args(args)
         p = replace(p, bound=bound, span=(np.float64(call.begin), np.float64(call.end)))
         row = dict(zip(self.kept, numbers, strict=True))
@@ -430,11 +454,12 @@ class Plan:
 
         def dense() -> DenseSolution:
             t, y, sizes = path  # type: ignore[misc]
-            psi = Generator(bound, p.orbit_dimension, start.reshape(*shape, self.n))
+            first = y[..., 0] if start is None else start
+            psi = Generator(bound, p.orbit_dimension, first.reshape(*shape, self.n))
             begin = np.full(shape, p.span[0])
             step = p.step.prepare(p.action, psi, psi.start, begin)  # type: ignore[arg-type]
             times, points = (np.moveaxis(x.reshape(*shape, *x.shape[1:]), -1, 0) for x in (t, y))
-            sizes = sizes.reshape(len(sizes), *shape)
+            sizes = np.moveaxis(np.nan_to_num(sizes).reshape(*shape, -1), -1, 0)
             return DenseSolution(p.action, psi, step, times, points, sizes, nominal=p.options.nominal)
 
         return {
@@ -447,15 +472,15 @@ class Plan:
 
 
 def _joined(pieces: Sequence[Piece], points: Array, begin: float) -> tuple[Array, Array, Array]:
-    """Times (L, j + 1), points (L, N, j + 1) and sizes (j, L) of the paths of all lanes."""
+    """Times (L, j + 1), points (L, N, j + 1) and sizes (L, j) of the paths of all lanes, filled up with NaN."""
     (lanes, n), paths = points.shape, [(x.lanes, x.path) for x in pieces if x.path is not None]
-    rows = max(len(path) for _, path in paths)
-    t, y, sizes = np.empty((lanes, rows + 1)), np.empty((lanes, n, rows + 1)), np.empty((rows, lanes))
-    t[:, 0], y[..., 0] = begin, points
+    rows = len(paths[0][1]) if len(paths) == 1 else max(len(path) for _, path in paths)
+    t, y, sizes = np.empty((lanes, rows + 1)), np.empty((lanes, n, rows + 1)), np.empty((lanes, rows))
+    t[:, 0], y[:, :, 0] = begin, points
     for here, path in paths:
         count = len(path)
         t[here, 1 : count + 1], y[here, :, 1 : count + 1] = path[:, n].T, path[:, :n].transpose(2, 1, 0)
-        sizes[:count, here] = path[:, n + 1]
+        sizes[here, :count] = path[:, n + 1].T
         if count < rows:
-            t[here, count + 1 :], y[here, :, count + 1 :], sizes[count:, here] = np.nan, np.nan, 0.0
-    return t, y, np.nan_to_num(sizes, copy=False)
+            t[here, count + 1 :], y[here, :, count + 1 :], sizes[here, count:] = np.nan, np.nan, np.nan
+    return t, y, sizes

@@ -215,20 +215,15 @@ class Kernel:
         argument = np.zeros(len(FIELDS), dtype=np.int64)
         count = state.shape[1]
         for name, value in {"state": state, "lanes": count, "last": count // self.width, **fields}.items():
-            set_field(argument, name, value)
+            if name in FLOATS:
+                argument.view(np.float64)[PLACES[name]] = value
+            elif value is not None:
+                argument[PLACES[name]] = value.ctypes.data if isinstance(value, np.ndarray) else value
         return argument
 
     def run_values(self, given: Mapping[str, float]) -> npt.NDArray[np.float64]:
         """The numbers of a run as an array, from their values by name; 0 by default."""
         return np.array([given.get(name, 0.0) for name in self.run_constants] or [0.0])
-
-
-def set_field(argument: npt.NDArray[np.int64], name: str, value: npt.NDArray[Any] | float | None) -> None:
-    """Set a field of an argument; the memory of an array must live as long as the argument is used."""
-    if name in FLOATS:
-        argument.view(np.float64)[PLACES[name]] = value
-    elif value is not None:
-        argument[PLACES[name]] = value.ctypes.data if isinstance(value, np.ndarray) else value
 
 
 def _on_tracers(function: TrajectoryConstant, graph: StepGraph) -> Expr | None:
