@@ -21,7 +21,7 @@ from liehom.flow.run.run import Run
 from liehom.flow.tracing.array import Traced
 from liehom.flow.tracing.graph import needed
 from liehom.flow.tracing.loop import StepGraph
-from liehom.flow.tracing.machine import Kernel, lanes_per_register
+from liehom.flow.tracing.machine import PLACES, Kernel, lanes_per_register
 
 # How many operations a step has, and how many lanes a block of its code should have.
 
@@ -116,6 +116,29 @@ class LaneSteps(NamedTuple):
     path: tuple[Array, Array, Array] | None  # times (j, L), points (j, N, L), sizes (j, L): 0 if the lane is masked
     h: Array | None = None  # proposed sizes
     halted: IntegerArray | None = None  # the row of `path` in which a terminal event ends the lane, -1 for none
+
+
+@final
+class Memory:
+    """Memory of a kernel for some lanes, and its argument as integers and as floats."""
+
+    def __init__(self, kernel: Kernel, lanes: int, constants: Array) -> None:
+        self.first: Array = kernel.packed(lanes, {"alive": 1.0, **lowest_numbers(kernel.graph)})
+        self.state: Array = self.first.copy()
+        self.start: Array = np.empty((kernel.graph.size, self.first.shape[1]))
+        self.rows: Array = np.ones((max(1, len(kernel.lane_constants)), self.first.shape[1]))
+        self.arrays: dict[str, Array] = dict.fromkeys(["stops", "out", "path"], np.zeros(0))
+        self.integers: IntegerArray = kernel.argument(self.state, start=self.start, rows=self.rows, constants=constants)
+        self.floats: Array = self.integers.view(np.float64)
+        self.address: int = self.integers.ctypes.data
+
+    def room(self, name: str, rows: int, *shape: int) -> Array:
+        """The array of a name, with at least as many rows."""
+        array = self.arrays[name]
+        if len(array) < rows:
+            array = self.arrays[name] = np.empty((rows, *shape))
+            self.integers[PLACES[name]] = array.ctypes.data
+        return array
 
 
 def run_blocks(kernel: Kernel, state: Array, fields: Mapping[str, Any], steps: int) -> None:

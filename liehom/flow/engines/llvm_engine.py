@@ -15,7 +15,7 @@ import numpy as np
 from liehom.base.errors import InputError
 from liehom.base.typing import Array, IntegerArray, Pytree
 from liehom.flow.action.fingerprint import Watch
-from liehom.flow.engines.compiled_events import EventSearch
+from liehom.flow.engines.compiled_events import EventSearch, planned_events
 from liehom.flow.engines.engine import Problem, executed
 from liehom.flow.engines.lanes import (
     HandBack,
@@ -106,19 +106,22 @@ class LlvmEngine:
         o, (_, key, graph) = problem.options, run.groups[0]
         if len(run.groups) > 1 or graph.guard is None or solution.status != END:
             return
-        if o.events is not None or o.checkpoint is not None or o.progress:
+        if o.checkpoint is not None or o.progress:
             return
         dt = None if o.dt is None else float(np.max(o.dt)) if (o.dt == np.max(o.dt)).all() else o.dt
         start = np.asarray(problem.start)
-        call = Call(start, 0.0, 1.0, dt, o.t_eval, o.dense_output, looks=o.looks)
+        call = Call(start, 0.0, 1.0, dt, o.t_eval, o.dense_output, looks=o.looks, events=o.events)
         form = form_of(call, problem.field, problem.args)
         dimension = int(np.max(problem.orbit_dimension))
         if form in self._plans or not serves_all_points(problem, run.step, dimension):
             return
+        events = None if o.events is None else planned_events(problem, run.step, dimension, np.asarray(solution.y))
+        if events is None and o.events is not None:
+            return
         if len(self._plans) >= MAX_PLANS:
             self._plans.pop(next(iter(self._plans)))
         kernel = self._store.kernel(key, graph, int(np.prod(start.shape[:-1], dtype=int)))
-        self._plans[form] = Plan(kernel, problem, run.step, run.work, run.prepared)
+        self._plans[form] = Plan(kernel, problem, run.step, run.work, run.prepared, events)
 
 
 @final

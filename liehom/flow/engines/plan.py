@@ -19,15 +19,16 @@ from liehom.base.typing import Array, IntegerArray, Pytree
 from liehom.flow.action.field import GeneratorField
 from liehom.flow.action.space import Action
 from liehom.flow.engines.arguments import with_tight_frame
+from liehom.flow.engines.compiled_events import PlannedEvents, events_key
 from liehom.flow.engines.engine import Problem
 from liehom.flow.engines.lanes import (
     LANE_STEPS_FOR_THREADS,
     OPERATIONS_PER_CALL,
     PATH_BYTES_PER_CALL,
+    Memory,
     calls_of,
     cores,
     in_threads,
-    lowest_numbers,
     records_of,
 )
 from liehom.flow.engines.traced_step import arg_values, args_form, args_of_lanes
@@ -35,7 +36,7 @@ from liehom.flow.methods.stability import MIN_STEPS
 from liehom.flow.run.check import gap_of
 from liehom.flow.run.control import SLACK
 from liehom.flow.run.options import ATOL, END, MESSAGES, RTOL
-from liehom.flow.run.records import StepStatistics, bounds_of
+from liehom.flow.run.records import EventLog, StepStatistics, bounds_of
 from liehom.flow.run.solution import DenseSolution, Solution, solution_of
 from liehom.flow.steps.step import Generator, Step
 from liehom.flow.tracing.graph import LaneConstant
@@ -64,6 +65,7 @@ class Call(NamedTuple):
     first_step: float | None = None
     max_steps: float = inf
     looks: int | None = None
+    events: Any = None
 
 
 ABSENT = frozenset(["dt", "t_eval", "events", "checkpoint", "first_step"])
@@ -99,6 +101,8 @@ def call_of(t_span: object, y0: object, options: Mapping[str, Any]) -> Call | No
             numbers[name] = value
         elif name == "dense_output" and type(value) is bool:
             numbers["dense"] = value
+        elif name == "events" and value is not None:
+            numbers[name] = value
         elif (value is not None or name not in ABSENT) and (name != "progress" or value is not False):
             return None
     call = Call(points, begin, end, **numbers)
@@ -149,7 +153,8 @@ def form_of(call: Call, field: GeneratorField, args: Pytree) -> Hashable:
     gap = None if call.dt is not None else gap_of(call.looks, 1.0, field)
     form = None if args is None else args_form(args, call.points.ndim - 1)
     kind = 0 if call.dt is None else 1 if type(call.dt) is float else 2
-    return call.points.shape, kind, call.times is None, call.dense, gap if gap in (None, inf) else 1.0, form
+    events = None if call.events is None else events_key(call.events)
+    return call.points.shape, kind, call.times is None, call.dense, gap if gap in (None, inf) else 1.0, form, events
 
 
 def serves_all_points(problem: Problem, step: Step, dimension: int) -> bool:
@@ -208,29 +213,6 @@ TROUBLE = frozenset(["unkept", "failed", "near", "short", "conservation_short", 
 """Numbers of steps that are 0, or -inf, if the steps are as they should be."""
 
 
-@final
-class Memory:
-    """Memory of a kernel for some lanes, and its argument as integers and as floats."""
-
-    def __init__(self, kernel: Kernel, lanes: int, constants: Array) -> None:
-        self.first: Array = kernel.packed(lanes, {"alive": 1.0, **lowest_numbers(kernel.graph)})
-        self.state: Array = self.first.copy()
-        self.start: Array = np.empty((kernel.graph.size, self.first.shape[1]))
-        self.rows: Array = np.ones((max(1, len(kernel.lane_constants)), self.first.shape[1]))
-        self.arrays: dict[str, Array] = dict.fromkeys(["stops", "out", "path"], np.zeros(0))
-        self.integers: IntegerArray = kernel.argument(self.state, start=self.start, rows=self.rows, constants=constants)
-        self.floats: Array = self.integers.view(np.float64)
-        self.address: int = self.integers.ctypes.data
-
-    def room(self, name: str, rows: int, *shape: int) -> Array:
-        """The array of a name, with at least as many rows."""
-        array = self.arrays[name]
-        if len(array) < rows:
-            array = self.arrays[name] = np.empty((rows, *shape))
-            self.integers[PLACES[name]] = array.ctypes.data
-        return array
-
-
 class Piece(NamedTuple):
     """What a kernel has made of some lanes: rows of their path, and numbers of their states."""
 
@@ -256,7 +238,10 @@ class Task(NamedTuple):
 class Plan:
     """A compiled call of one form: points, span, sizes, tolerances, output times and args are those of each call."""
 
-    def __init__(self, kernel: Kernel, problem: Problem, step: Step, work: int, calls: int) -> None:
+    def __init__(
+        self, kernel: Kernel, problem: Problem, step: Step, work: int, calls: int, events: PlannedEvents | None
+    ) -> None:  # fmt: skip
+        self.events = events
         shape, graph = np.shape(problem.start), kernel.graph
         self.kernel, self.problem, self.step, self.work, self.prepared = kernel, problem, step, work, calls
         self.shape, self.n, self.lanes = shape[:-1], shape[-1], int(np.prod(shape[:-1], dtype=int))
@@ -290,7 +275,12 @@ class Plan:
             total = max(ceil(abs(end - begin) / dt - (SLACK + rest / dt)), 1)
             if total >= call.max_steps:
                 return None
-        keeps, starts = times is None or call.dense, int(times is not None and float(times[0]) == begin)
+        if self.events is not None and self.events.parts.changed():
+            return None
+        keeps, starts = (
+            times is None or call.dense or self.events is not None,
+            int(times is not None and float(times[0]) == begin),
+        )
         chunk = self._chunk(total if self.lockstep or not keeps else self.rows, keeps=keeps)
         if chunk < 1:
             return None
@@ -310,14 +300,18 @@ class Plan:
         if not self.is_judged and numbers[self.kept.index("count")].max() >= MIN_STEPS:
             self.is_judged = True  # an ordinary call says whether the field is stiff
             return None
-        path = _joined(good, points, begin) if keeps else None
+        path, log = _joined(good, points, begin) if keeps else None, None
+        if self.events is not None and path is not None:
+            log = self.events(path, task.values, (begin, end))
+            if log is None:
+                return None
         t, result = (path[0], path[1]) if path is not None and y is None else (times, y)  # type: ignore[assignment]
         t = t.copy() if times is not None else t[0] if not self.shape else t.reshape(*self.shape, t.shape[-1])
         result = result[0] if not self.shape else result.reshape(*self.shape, self.n, result.shape[-1])
         # what the other entries need is copied: points may change
         first = points[ranked(self.lanes)] if self.step.uses_isotropy else points[:0]
         start = np.array(points) if keeps and y is not None else None
-        return solution_of(t, result, END, lambda: self._others(call, args, numbers, path, (first, start)))
+        return solution_of(t, result, END, lambda: self._others(call, args, numbers, path, (first, start), log))
 
     def _made(self, task: Task, lanes: slice) -> Piece | None:
         """Run the kernel for some lanes; None if one of them fails."""
@@ -434,7 +428,7 @@ class Plan:
 
     def _others(
         self, call: Call, args: Pytree, numbers: Array, path: tuple[Array, Array, Array] | None,
-        starts: tuple[Array, Array | None],
+        starts: tuple[Array, Array | None], log: EventLog | None,
     ) -> dict[str, object]:  # fmt: skip
         """The other entries of a solution, which are made when one of them is asked for."""
         p, shape, graph, (points, start) = self.problem, self.shape, self.kernel.graph, starts
@@ -462,12 +456,13 @@ class Plan:
             sizes = np.moveaxis(np.nan_to_num(sizes).reshape(*shape, -1), -1, 0)
             return DenseSolution(p.action, psi, step, times, points, sizes, nominal=p.options.nominal)
 
+        t_events, y_events = (None, None) if log is None else log.lists()
         return {
-            "sol": dense() if call.dense else None, "t_events": None, "y_events": None,
+            "sol": dense() if call.dense else None, "t_events": t_events, "y_events": y_events,
             "nfev": self.prepared + int(calls.max()), "message": MESSAGES[END],
             "n_steps": steps.reshape(shape) if shape else int(steps[0]), "report": report,
             "statuses": np.full(shape, END) if shape else END, "njev": 0, "nlu": 0,
-            "_steps": None if path is None else dense,
+            "_steps": dense if call.times is None or call.dense else None,
         }  # fmt: skip
 
 

@@ -372,3 +372,79 @@ def test_a_field_whose_globals_change_is_traced_again() -> None:
 
 
 SCALE = RATES
+
+
+# -- events ------------------------------------------------------------------------------------------------
+def height(t: Any, m: Any) -> Any:
+    return m[..., 2] - 0.3
+
+
+def width(t: Any, m: Any) -> Any:
+    return m[..., 0] * np.cos(t / 3)
+
+
+def grazing(t: Any, m: Any) -> Any:
+    return m[..., 1] - LEVEL
+
+
+LEVEL = 0.7
+
+
+@pytest.mark.parametrize("count", [1, 4])
+@pytest.mark.parametrize(
+    ("step", "options"),
+    [
+        (lh.Taylor(8), {"dt": 0.2}), (lh.Taylor(8), {"rtol": 1e-8}), (lh.RKMK("rk4"), {"dt": 0.1, "t_eval": [1.0]}),
+        (lh.Corrected(lh.Euler(), 4), {"dt": 0.1}),
+    ], ids=str,
+)  # fmt: skip
+def test_events_of_a_second_call_are_those_of_the_first(step: Any, options: dict[str, Any], count: int) -> None:
+    made, engine = propagator(step=step)
+    points = sphere(2 * count).reshape(2, count, 3)[:, 0 if count == 1 else slice(None)]
+    given = {**options, "events": [height, width, grazing]}
+    made((0.0, 1.0), points[0], **given)
+    seen = 0
+    for span, y0 in (((0.0, 9.0), points[1]), ((1.0, -8.0), points[0])):
+        solved, sol = engine.solved, made(span, y0, **given)
+        assert engine.solved == solved
+        fresh = propagator(step=step)[0](span, y0, **given)
+        np.testing.assert_array_equal(sol.y, fresh.y)
+        for mine, other in ((sol.t_events, fresh.t_events), (sol.y_events, fresh.y_events)):
+            for a, b in zip(mine, other, strict=True):
+                assert np.shape(a) == np.shape(b) and a.dtype == b.dtype
+                for x, y in zip(np.reshape(a, -1), np.reshape(b, -1), strict=True):
+                    np.testing.assert_allclose(x, y, rtol=0, atol=1e-12)
+        seen += sum(np.size(np.concatenate(list(np.reshape(t, -1)))) if count > 1 else len(t) for t in sol.t_events)
+    assert seen >= 3 * count
+
+
+def test_an_event_function_that_is_made_in_each_call_is_compiled_once() -> None:
+    made, engine = propagator(step=lh.Taylor(8))
+    for level in (0.3, 0.3, 0.31):
+        sol = made((0.0, 9.0), START, dt=0.1, events=lambda t, m, level=level: m[..., 2] - level)
+        np.testing.assert_allclose(sol.y_events[0][:, 2], level, rtol=0, atol=1e-13)
+    assert engine.solved in (2, 3)  # 3, if the two numbers 0.3 are different objects
+
+
+def test_an_event_function_whose_globals_change_is_compiled_again() -> None:
+    made, _ = propagator(step=lh.Taylor(8))
+    for level in (0.5, 0.4):
+        globals()["LEVEL"] = level
+        for _ in range(2):
+            heights = made((0.0, 9.0), START, dt=0.1, events=grazing).y_events[0][:, 1]
+            assert len(heights)
+            np.testing.assert_allclose(heights, level, rtol=0, atol=1e-13)
+
+
+def test_terminal_events_and_functions_that_cannot_be_traced_are_made_in_the_ordinary_way() -> None:
+    def branching(t: Any, m: Any) -> Any:
+        return 1.0 if m[2] > 0.3 else -1.0
+
+    stop = lambda t, m: m[..., 2] - 0.3  # noqa: E731
+    stop.terminal = True  # type: ignore[attr-defined]
+    for event, status in ((branching, 0), (stop, 1)):
+        made, engine = propagator(step=lh.Taylor(8))
+        ends = [made((0.0, 9.0), START, dt=0.1, events=event) for _ in range(2)]
+        assert engine.solved == 2 and [sol.status for sol in ends] == [status, status]
+        np.testing.assert_array_equal(ends[0].y, ends[1].y)
+        assert len(ends[1].t_events[0]) == len(ends[0].t_events[0]) > 0
