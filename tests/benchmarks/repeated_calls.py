@@ -2,7 +2,7 @@
 
     python -m tests.benchmarks.repeated_calls [CALLS]
 
-Each row is the processor time of one call in a loop ``y = P((t, t + 0.1), y, ...).y[:, -1]`` on the rigid body, the least
+Each row is the processor time of a call in a loop ``y = P((t, t + 0.1), y, ...).y[:, -1]`` on the rigid body, the least
 of some loops. The first calls, which trace and compile, are not counted. heyoka is optional.
 """
 

@@ -491,9 +491,11 @@ class PlannedEvents:
         made = self.at_points([*y.transpose(1, 0, 2).reshape(n, -1), t.reshape(-1)], values)
         g, ahead, back = made.reshape(3, events.count, lanes, k)
         rows: list[tuple[int, int, float, int, Any, Array, bool]] = []
-        for i in range(events.count):
-            start, end, sign = g[i, :, :-1], g[i, :, 1:], np.sign(g[i, :, :-1])
-            turns = (start * end > 0) & (sign * back[i, :, 1:] > 0) & (sign * ahead[i, :, :-1] < 0)
+        starts, ends = g[..., :-1], g[..., 1:]
+        same = starts * ends > 0
+        turning = same & (starts * back[..., 1:] > 0) & (starts * ahead[..., :-1] < 0)
+        for i in range(events.count) if not same.all() or turning.any() else ():
+            start, end, turns = starts[i], ends[i], turning[i]
             for b in np.flatnonzero(events.left(i, start[:, 0], end[:, 0])):
                 rows.append((int(b), 0, 0.0, i, t[b, 0], y[b, :, 0].copy(), False))
             some = (turns | events.crossed(i, start, end)).nonzero()

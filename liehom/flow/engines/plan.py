@@ -252,6 +252,8 @@ class Plan:
         small = self.lanes <= SMALL
         self.kept = [x for x in kernel.names if small or x in recorded or x in ("count", "tries")]
         self.kept_rows: Any = slice(None) if small else [self.place[name] for name in self.kept]
+        self.count = self.kept.index("count")
+        self.ranked = ranked(self.lanes) if step.uses_isotropy else np.zeros(0, dtype=int)
         self.given = [(name, i) for name, i in self.place.items() if name in ("t", "stop", "kept", "h")]
         self.constants: Array = np.zeros(max(1, len(kernel.run_constants)))
         self.memory = Memory(kernel, self.lanes, self.constants) if small else None
@@ -277,10 +279,8 @@ class Plan:
                 return None
         if self.events is not None and self.events.parts.changed():
             return None
-        keeps, starts = (
-            times is None or call.dense or self.events is not None,
-            int(times is not None and float(times[0]) == begin),
-        )
+        keeps = times is None or call.dense or self.events is not None
+        starts = int(times is not None and float(times[0]) == begin)
         chunk = self._chunk(total if self.lockstep or not keeps else self.rows, keeps=keeps)
         if chunk < 1:
             return None
@@ -297,7 +297,7 @@ class Plan:
         if len(good) < len(pieces):
             return None
         numbers = good[0].numbers if len(good) == 1 else np.concatenate([x.numbers for x in good], axis=1)
-        if not self.is_judged and numbers[self.kept.index("count")].max() >= MIN_STEPS:
+        if not self.is_judged and numbers[self.count].max() >= MIN_STEPS:
             self.is_judged = True  # an ordinary call says whether the field is stiff
             return None
         path, log = _joined(good, points, begin) if keeps else None, None
@@ -309,7 +309,7 @@ class Plan:
         t = t.copy() if times is not None else t[0] if not self.shape else t.reshape(*self.shape, t.shape[-1])
         result = result[0] if not self.shape else result.reshape(*self.shape, self.n, result.shape[-1])
         # what the other entries need is copied: points may change
-        first = points[ranked(self.lanes)] if self.step.uses_isotropy else points[:0]
+        first = points[self.ranked] if len(self.ranked) else points[:0]
         start = np.array(points) if keeps and y is not None else None
         return solution_of(t, result, END, lambda: self._others(call, args, numbers, path, (first, start), log))
 
@@ -323,7 +323,7 @@ class Plan:
             row[:count] = task.values[number.name][lanes] if isinstance(number, LaneConstant) else number(points)
         parts = self._run(memory, task, points, lanes)
         state = memory.state
-        if parts is None or (self.trouble and (state[self.trouble, :count] > 0).any()):
+        if parts is None or any((state[i, 0] if count == 1 else state[i, :count].max()) > 0 for i in self.trouble):
             return None
         if y is not None and y.shape[2] > task.starts:
             out = memory.arrays["out"]
@@ -394,8 +394,8 @@ class Plan:
 
     def _to_the_end(self, memory: Memory, count: int, most: float, *, keeps: bool) -> list[Array] | None:
         """Run the kernel until all lanes are at the end, by steps of their own sizes."""
-        parts, width, row = list[Array](), memory.state.shape[1], self.n + 1
-        alive, taken = (memory.state[self.place[name], :count] for name in ("alive", "count"))
+        parts, width, row, state = list[Array](), memory.state.shape[1], self.n + 1, memory.state
+        alive, taken = state[self.place["alive"], :count], state[self.place["count"], :count]
         memory.integers[END_STEP] = max(1, OPERATIONS_PER_CALL // (self.work * count))
         while True:
             if keeps:
@@ -406,9 +406,10 @@ class Plan:
             if keeps:
                 moved = path[:, row, :count].any(axis=-1).nonzero()[0]
                 parts.append(path[: int(moved[-1]) + 1 if len(moved) else 0])
-            if taken.max() >= most or not alive.all():
+            least, most_left = (alive[0], alive[0]) if count == 1 else (np.abs(alive).min(), alive.max())
+            if least == 0 or (taken[0] if count == 1 else taken.max()) >= most:
                 return None
-            if alive.max() < 0:
+            if most_left < 0:
                 return parts
             if keeps:  # the path is full
                 memory.arrays["path"], self.rows = np.zeros(0), 2 * self.rows
@@ -416,7 +417,7 @@ class Plan:
     def _path(self, parts: list[Array], count: int) -> Array:
         """The path of some lanes, without gaps, from its parts."""
         path = (parts[0] if len(parts) == 1 else np.concatenate(parts))[..., :count]
-        if self.lockstep:
+        if self.lockstep or (count == 1 and path[:, self.n + 1].all()):
             return path
         moved = path[:, self.n + 1] != 0
         if not moved.all():
@@ -437,7 +438,7 @@ class Plan:
         row = dict(zip(self.kept, numbers, strict=True))
         statistics = StepStatistics(self.step, shape)
         if len(points):
-            note_ranks(statistics, p, self.step, points, ranked(self.lanes), shape)
+            note_ranks(statistics, p, self.step, points, self.ranked, shape)
         statistics.add_compiled(np.arange(self.lanes), records_of(self.kernel, row), (call.begin, call.end))
         calls = calls_of(self.kernel, row, row.get("tries", row["count"]))
         calls = calls + int(graph.first is not None and call.dt is None and not (call.first_step or call.min_step))

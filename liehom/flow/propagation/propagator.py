@@ -258,6 +258,7 @@ class Propagator:
         # an engine is for one step: the default steps for several tolerances have one each
         self._new_engine: str | None = engine if isinstance(engine, str) else None
         self._engines: dict[Step, Engine] = {}
+        self._defaults: dict[tuple[bool, float, float], Step] = {}
         self._nominal = checked_clock(clock)
         self._action = _action(field.representation, exponential)
 
@@ -355,7 +356,12 @@ class Propagator:
             return self.step
         if self._new_engine is None and self._engines:
             return next(iter(self._engines))
-        return default_step(dt, rtol, least_atol(atol, self.field.representation.size))
+        key = (dt is None, rtol, atol)
+        if type(rtol) is not float or type(atol) is not float:
+            return default_step(dt, rtol, least_atol(atol, self.field.representation.size))
+        if key not in self._defaults:
+            self._defaults[key] = default_step(dt, rtol, least_atol(atol, self.field.representation.size))
+        return self._defaults[key]
 
     def _engine_for(self, step: Step) -> Engine:
         """The engine for a step."""
