@@ -399,12 +399,13 @@ def events_key(functions: object) -> Hashable:
     """What two event functions share that are made at one place from the same values."""
     if isinstance(functions, list | tuple):
         return tuple(map(events_key, functions))
-    marks = tuple(getattr(functions, name, None) for name in ("direction", "terminal"))
-    if not isinstance(functions, FunctionType):
-        return id(functions), *marks
-    cells = [cell.cell_contents for cell in functions.__closure__ or ()]
-    inner = tuple(map(id, [*cells, *(functions.__defaults__ or ()), *(functions.__kwdefaults__ or {}).values()]))
-    return functions.__code__, id(functions.__globals__), inner, *marks
+    marks = tuple(repr(getattr(functions, name, None)) for name in ("direction", "terminal"))
+    if isinstance(functions, FunctionType):
+        with suppress(ValueError):  # a cell that is not assigned yet
+            cells = [cell.cell_contents for cell in functions.__closure__ or ()]
+            inner = [*cells, *(functions.__defaults__ or ()), *(functions.__kwdefaults__ or {}).values()]
+            return functions.__code__, id(functions.__globals__), tuple(map(id, inner)), *marks
+    return id(functions), *marks
 
 
 @final
@@ -413,14 +414,15 @@ class PlannedEvents:
 
     def __init__(self, problem: Problem, step: Step, dimension: int) -> None:
         self.problem, self.step, self.dimension = problem, step, dimension
-        self.functions: Any = problem.options.events
+        functions: Any = problem.options.events
         self.n, self.lead = np.shape(problem.start)[-1], np.ndim(problem.start) - 1
-        self.events = Events(self.functions, problem.args)
+        self.functions: Any = functions
+        self.events: Events = Events(functions, problem.args)
         self.parts = Parts(self.functions if isinstance(self.functions, list | tuple) else [self.functions])
         self.at_points = self._at_points()
         self.in_steps: dict[int, PointCode | None] = {}
 
-    def _traced(self, tape: Tape) -> tuple[Traced, Traced, GeneratorField, Events]:
+    def _traced(self, tape: Tape) -> tuple[Any, Any, GeneratorField, Events]:
         """Point, time, field and events on a tape."""
         args, field = self.problem.args, self.problem.field
         known = None if args is None else traced_args(tape, args, self.lead)
@@ -453,13 +455,14 @@ class PlannedEvents:
         """The code itself."""
         p, n, tape = self.problem, self.n, Tape()
         m, t, field, events = self._traced(tape)
-        h, after, start, end, ahead, back = (Traced(tape, tape.input(n + k)) for k in range(1, 7))
+        more: list[Any] = [Traced(tape, tape.input(n + k)) for k in range(1, 7)]
+        h, after, start, end, ahead, back = more
         action = with_traced_frame(tape, p.action, self.step, np.asarray(p.start).reshape(-1, n), self.dimension)
         local = self.step.at(action, Generator(field, self.dimension), m, t[..., None])
         yes: Any = h == h
         step = StepProposal(local, t, m, h, after, m, yes, ~yes, p.options.nominal, {})
 
-        def slope(i: int, place: object, value: object, inwards: int, here: object) -> Traced:
+        def slope(i: int, place: object, value: object, inwards: int, here: object) -> Array:
             return ahead if inwards > 0 else back
 
         look = Look(step.position, slope, h, (t, m), (after, m), yes)
@@ -496,8 +499,8 @@ class PlannedEvents:
         turning = same & (starts * back[..., 1:] > 0) & (starts * ahead[..., :-1] < 0)
         for i in range(events.count) if not same.all() or turning.any() else ():
             start, end, turns = starts[i], ends[i], turning[i]
-            for b in np.flatnonzero(events.left(i, start[:, 0], end[:, 0])):
-                rows.append((int(b), 0, 0.0, i, t[b, 0], y[b, :, 0].copy(), False))
+            for lane in np.flatnonzero(events.left(i, start[:, 0], end[:, 0])).tolist():
+                rows.append((lane, 0, 0.0, i, t[lane, 0], y[lane, :, 0].copy(), False))
             some = (turns | events.crossed(i, start, end)).nonzero()
             if not len(some[0]):
                 continue

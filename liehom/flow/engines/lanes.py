@@ -94,7 +94,8 @@ OPERATIONS_PER_CALL = 4_000_000_000
 """Scalar operations per kernel call, summed over lanes. Progress, checkpoints and Ctrl-C are handled between calls."""
 MIN_STEPS_PER_CALL = 8  # steps per kernel call at least: the time between two calls is that of some steps
 LANE_STEPS_FOR_THREADS = 50_000  # steps of a call, summed over lanes, from which on threads share the blocks
-T, Job = TypeVar("T"), TypeVar("Job")
+T = TypeVar("T")
+Job = TypeVar("Job")
 _POOL: dict[int, ThreadPoolExecutor] = {}
 if hasattr(os, "register_at_fork"):
     os.register_at_fork(after_in_child=_POOL.clear)

@@ -113,7 +113,8 @@ class LlvmEngine:
         call = Call(start, 0.0, 1.0, dt, o.t_eval, o.dense_output, looks=o.looks, events=o.events)
         form = form_of(call, problem.field, problem.args)
         dimension = int(np.max(problem.orbit_dimension))
-        if form in self._plans or not serves_all_points(problem, run.step, dimension):
+        known = self._plans.get(form)
+        if (known is not None and known.is_current) or not serves_all_points(problem, run.step, dimension):
             return
         events = None if o.events is None else planned_events(problem, run.step, dimension, np.asarray(solution.y))
         if events is None and o.events is not None:
@@ -225,7 +226,7 @@ class _CompiledRun:
         stops = stops_of(times, float(run.stops.end))
         done = np.zeros(count) if samples is None else samples.done.reshape(-1)[lanes]
         taken = back.taken[lanes]
-        rows = {"x": back.m[lanes].T, "alive": 1.0, "count": taken, **lowest_numbers(graph)}
+        rows: dict[str, Any] = {"x": back.m[lanes].T, "alive": 1.0, "count": taken, **lowest_numbers(graph)}
         fields: dict[str, Any] = {"begin": 0, "end": steps}
         if graph.reached is None:
             dt, before = float(np.max(np.asarray(run.options.dt))), int(taken[0])
@@ -239,8 +240,10 @@ class _CompiledRun:
             }
             steps, rows["count"] = last - before, float(last)
         else:
-            dt = run.options.dt
-            sizes = back.h[lanes] if dt is None else run.direction * np.broadcast_to(dt, run.shape).reshape(-1)[lanes]
+            given = run.options.dt
+            sizes = back.h[lanes]
+            if given is not None:
+                sizes = run.direction * np.broadcast_to(given, run.shape).reshape(-1)[lanes]
             rows |= {"t": back.t[lanes], "stop": done, "h": sizes} | ({} if graph.sizes is None else {"kept": done})
         state = kernel.packed(count, rows)
         out = np.empty((len(stops) + 1, n, state.shape[1]))
@@ -256,7 +259,7 @@ class _CompiledRun:
         else:
             reached, going, ended = row["t"], alive > 0, alive < 0
             until = np.where(ended, len(times), row["stop" if graph.sizes is None else "kept"].astype(int))
-            tries = row.get("tries", now - taken)
+            tries = row.get("tries", now - taken)  # type: ignore[assignment]
         calls = calls_of(kernel, row, tries)
         if graph.first is not None:
             calls = calls + np.isinf(sizes)

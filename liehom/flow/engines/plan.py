@@ -74,10 +74,10 @@ NUMBERS = frozenset(["rtol", "atol", "max_step", "min_step", "first_step", "max_
 
 def call_of(t_span: object, y0: object, options: Mapping[str, Any]) -> Call | None:
     """The numbers of a call, None if it needs a closer look."""
-    begin, end = t_span  # type: ignore[misc]
-    if type(begin) not in KINDS or type(end) not in KINDS:
+    first, last = t_span  # type: ignore[misc]
+    if type(first) not in KINDS or type(last) not in KINDS:  # type: ignore[has-type]
         return None
-    begin, end = float(begin), float(end)
+    begin, end = float(first), float(last)  # type: ignore[has-type]
     points = _floats("the start", y0)
     if points is None or not 0.0 < abs(end - begin) < inf:
         return None
@@ -122,7 +122,7 @@ def _floats(what: str, given: object) -> Array | None:
     elif type(given) is not np.ndarray:
         return None
     if value.dtype == np.float64:
-        return value  # type: ignore[no-any-return]
+        return value
     return value.astype(np.float64) if value.dtype.kind in "iu" else None
 
 
@@ -259,6 +259,11 @@ class Plan:
         self.memory = Memory(kernel, self.lanes, self.constants) if small else None
         self.is_judged, self.rows, self.lock = problem.options.dt is not None, ROOM, threading.Lock()
 
+    @property
+    def is_current(self) -> bool:
+        """Whether the event functions are those that were compiled."""
+        return self.events is None or not self.events.parts.changed()
+
     def __call__(self, call: Call, args: Pytree = None) -> Solution | None:
         """The solution, or None if the call needs a closer look."""
         if not self.lock.acquire(blocking=False):
@@ -277,7 +282,7 @@ class Plan:
             total = max(ceil(abs(end - begin) / dt - (SLACK + rest / dt)), 1)
             if total >= call.max_steps:
                 return None
-        if self.events is not None and self.events.parts.changed():
+        if not self.is_current:
             return None
         keeps = times is None or call.dense or self.events is not None
         starts = int(times is not None and float(times[0]) == begin)
@@ -305,7 +310,10 @@ class Plan:
             log = self.events(path, task.values, (begin, end))
             if log is None:
                 return None
-        t, result = (path[0], path[1]) if path is not None and y is None else (times, y)  # type: ignore[assignment]
+        t: Any = times
+        result: Any = y
+        if path is not None and y is None:
+            t, result, _ = path
         t = t.copy() if times is not None else t[0] if not self.shape else t.reshape(*self.shape, t.shape[-1])
         result = result[0] if not self.shape else result.reshape(*self.shape, self.n, result.shape[-1])
         # what the other entries need is copied: points may change
@@ -404,7 +412,7 @@ class Plan:
                 path[:, row] = 0.0
             self.kernel.run(memory.address)
             if keeps:
-                moved = path[:, row, :count].any(axis=-1).nonzero()[0]
+                moved = np.flatnonzero(path[:, row, :count].any(axis=-1))
                 parts.append(path[: int(moved[-1]) + 1 if len(moved) else 0])
             least, most_left = (alive[0], alive[0]) if count == 1 else (np.abs(alive).min(), alive.max())
             if least == 0 or (taken[0] if count == 1 else taken.max()) >= most:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, replace
@@ -258,7 +258,7 @@ class Propagator:
         # an engine is for one step: the default steps for several tolerances have one each
         self._new_engine: str | None = engine if isinstance(engine, str) else None
         self._engines: dict[Step, Engine] = {}
-        self._defaults: dict[tuple[bool, float, float], Step] = {}
+        self._defaults: dict[Hashable, Step] = {}
         self._nominal = checked_clock(clock)
         self._action = _action(field.representation, exponential)
 
@@ -356,12 +356,12 @@ class Propagator:
             return self.step
         if self._new_engine is None and self._engines:
             return next(iter(self._engines))
-        key = (dt is None, rtol, atol)
-        if type(rtol) is not float or type(atol) is not float:
+        wanted: tuple[Any, ...] = (dt is None, rtol, atol)
+        if not isinstance(wanted[1], float) or not isinstance(wanted[2], float):
             return default_step(dt, rtol, least_atol(atol, self.field.representation.size))
-        if key not in self._defaults:
-            self._defaults[key] = default_step(dt, rtol, least_atol(atol, self.field.representation.size))
-        return self._defaults[key]
+        if wanted not in self._defaults:
+            self._defaults[wanted] = default_step(dt, rtol, least_atol(atol, self.field.representation.size))
+        return self._defaults[wanted]
 
     def _engine_for(self, step: Step) -> Engine:
         """The engine for a step."""

@@ -12,7 +12,7 @@ If g has at most one extremum within each step, all of its zeros are found, exce
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any, NamedTuple, TypeAlias, final
+from typing import Any, NamedTuple, TypeAlias, cast, final
 
 import numpy as np
 
@@ -74,10 +74,14 @@ class Events:
 
     def value(self, i: int, t: Array, y: Array) -> Array:
         """g_i(t, y), shape (...,)."""
-        time = t if isinstance(t, Traced) or np.ndim(t) else np.asarray(t)[()]
+        time: Any = t
+        if not isinstance(time, Traced) and not time.ndim:
+            time = np.asarray(t)[()]
         answer = guarded(self.functions[i], f"events[{i}]", time, y)
-        if isinstance(y, Traced):  # a function that ignores y returns a number
-            return Traced(y.tape, answer)  # type: ignore[return-value]
+        point: Any = y
+        if isinstance(point, Traced):  # a function that ignores y returns a number
+            value: Any = Traced(point.tape, answer)
+            return value
         try:
             value = np.asarray(answer)
             value = value if value.dtype.kind == "f" else value.astype(np.float64, casting="same_kind")
@@ -132,7 +136,7 @@ class Events:
 
     def zeros(self, i: int, look: Look, start: Array, end: Array) -> list[tuple[BooleanArray, Array]]:
         """The zeros of g_i within a step, in the order of time: for which trajectories, and their sizes s in (0, h]."""
-        h = look.h
+        h: Any = look.h
 
         def g(s: Array) -> Array:
             return self.value(i, *look.position(s)).astype(s.dtype)
@@ -175,9 +179,10 @@ class Events:
         return here & (value < 0), s, sign * value
 
 
-def _some(where: BooleanArray) -> bool:
+def _some(where: object) -> bool:
     """Whether a condition holds somewhere, or may do so because its values are not known."""
-    return isinstance(where, Traced) or bool(np.any(where))
+    condition: Any = where
+    return isinstance(condition, Traced) or bool(np.any(condition))
 
 
 def lowest(
@@ -186,7 +191,7 @@ def lowest(
     """Points s between 0 and h at which f > 0 is lowest, and f(s); ends where f < 0 or f stays clear of 0."""
 
     def again(*numbers: Array) -> list[Array]:
-        busy, clear, a, b, c, fa, fb, fc = numbers
+        busy, clear, a, b, c, fa, fb, fc = cast("list[Any]", numbers)
         x, least = _vertex((a, b, c), (fa, fb, fc))
         bracketed = (fb <= fa) & (fb <= fc)
         far = bracketed & (least > CLEAR_OF_ZERO * fb)
@@ -241,7 +246,7 @@ def bracketed_zero(g: Callable[[Array], Array], h: Array, start: Array, end: Arr
 
     # a is the newest point, b the other end of the bracket, c the newest of the points that are not ends any more
     def again(*numbers: Array) -> list[Array]:
-        busy, a, b, c, ga, gb, gc, fraction, far = numbers
+        busy, a, b, c, ga, gb, gc, fraction, far = cast("list[Any]", numbers)
         x = np.where(busy, a + fraction * (b - a), far)
         gx = g(x)
         same = ~((gx > 0) ^ (ga > 0))
@@ -255,7 +260,8 @@ def bracketed_zero(g: Callable[[Array], Array], h: Array, start: Array, end: Arr
 
     zero = 0 * h
     state = [here & (end != 0) & (np.abs(h) > 2 * least), h, zero, zero, end, start, start, zero + 0.5, h]
-    return repeated(again, state, ITERATIONS)[8]  # type: ignore[no-any-return]
+    far: Array = repeated(again, state, ITERATIONS)[8]
+    return far
 
 
 def _next_fraction(points: tuple[Array, Array, Array], values: tuple[Array, Array, Array], least: Array) -> Array:

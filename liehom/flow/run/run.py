@@ -195,7 +195,8 @@ class StepProposal:
         low, high = np.minimum(self.t, self.after), np.maximum(self.t, self.after)
         t = np.where(s == self.h, self.after, np.clip(self.t + passed, low, high))
         y: Any = self.local.point(s[..., None])
-        return t, y if isinstance(y, Traced) else np.asarray(y)
+        y = y if isinstance(y, Traced) else np.asarray(y)
+        return t, y
 
     def point(self, time: Array, here: BooleanArray) -> Array:
         """The points (..., N) at a time within the step, for the lanes `here`."""
