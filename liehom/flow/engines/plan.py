@@ -325,7 +325,7 @@ class Plan:
         """Run the kernel for some lanes; None if one of them fails."""
         points, y = task.points[lanes], task.y
         count, memory = len(points), self.memory
-        if memory is None:
+        if memory is None or count < self.lanes:  # pieces run in threads
             memory = Memory(self.kernel, count, self.constants)
         for row, number in zip(memory.rows, self.kernel.lane_constants, strict=False):
             row[:count] = task.values[number.name][lanes] if isinstance(number, LaneConstant) else number(points)

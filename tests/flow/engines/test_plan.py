@@ -318,6 +318,18 @@ def test_an_ensemble_in_pieces_is_the_ensemble(
     assert engine.solved == 1
 
 
+def test_a_small_ensemble_in_threads_is_the_ensemble(monkeypatch: pytest.MonkeyPatch) -> None:
+    made, engine = propagator(step=lh.Taylor(8))
+    points = sphere(20)
+    made((0.0, 1.0), points, dt=0.1, t_eval=[1.0])
+    monkeypatch.setenv("LIEHOM_NUM_THREADS", "1")
+    whole = made((0.0, 900.0), points, dt=0.1, t_eval=[900.0])
+    monkeypatch.setenv("LIEHOM_NUM_THREADS", "3")
+    for _ in range(5):
+        np.testing.assert_array_equal(made((0.0, 900.0), points, dt=0.1, t_eval=[900.0]).y, whole.y)
+    assert engine.solved == 1
+
+
 @pytest.mark.parametrize("count", [1, 100])
 def test_a_path_that_is_longer_than_its_memory_goes_on(count: int, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(plan, "ROOM", 2)
