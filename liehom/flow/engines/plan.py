@@ -343,7 +343,7 @@ class Plan:
         """Number of lanes that are run at once, whole blocks; 0 if even one block is too long for one call."""
         width, most = self.kernel.width, min(self.lanes, CHUNK)
         if self.lanes * max(rows, 1) >= LANE_STEPS_FOR_THREADS:
-            most = min(most, -(-self.lanes // cores()))
+            most = min(most, max(width, -(-self.lanes // cores())))
         most = min(most, OPERATIONS_PER_CALL // (self.work * max(rows, 1)))
         if keeps:
             most = min(most, PATH_BYTES_PER_CALL // (8 * (self.n + 2) * rows))
