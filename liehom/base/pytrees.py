@@ -127,6 +127,10 @@ def leaves(tree: Pytree, path: str = "args") -> list[Leaf]:
     >>> leaves({"inertia": (1.0, 2.0), "gain": None})
     [Leaf(path="args['inertia'][0]", value=1.0), Leaf(path="args['inertia'][1]", value=2.0)]
     """
+    if type(tree) is dict:
+        return [leaf for key, x in tree.items() for leaf in leaves(x, f"{path}[{key!r}]")]
+    if type(tree) in (float, np.ndarray):
+        return [Leaf(path, tree)]
     leaves_: list[Leaf] = []
     mapped(tree, leaves_.append, path)
     return leaves_

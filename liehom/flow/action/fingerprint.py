@@ -14,7 +14,7 @@ import json
 import pickle
 import re
 import sys
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cached_property, lru_cache, partial
 from types import CodeType, FunctionType, MethodType, ModuleType
 from typing import Any, TypeAlias, final
@@ -256,13 +256,25 @@ def _moved(action: Action, x: Array, m: Array, start: Array) -> Array:
 LARGEST = 4096  # bytes of a content that is compared in every call; larger arrays are sampled
 
 
+class Parts:
+    """The parts of functions, compared in later calls."""
+
+    def __init__(self, sources: Sequence[Part]) -> None:
+        walks = [_walk("", partial(sources.__getitem__, i), {}) for i in range(len(sources))]
+        self._rows = [(read, x, *_looked(x, is_leaf)) for walk in walks for _, read, x, is_leaf in walk]
+
+    def changed(self) -> bool:
+        """Whether the code of a function, or what it names, is another one than before."""
+        return any(_has_changed(*row) for row in self._rows)
+
+
 @final
-class Watch:
+class Watch(Parts):
     """The parts of the psi from which code was compiled, and one value of it, compared in later calls."""
 
     def __init__(self, field: GeneratorField, start: Values, t: Real | np.floating[Any]) -> None:
-        source = source_of(field)
-        rows = [(read, x, *_looked(x, is_leaf)) for _, read, x, is_leaf in _walk("", lambda: source, {})]
+        self.field, source = field, source_of(field)
+        super().__init__([source])
         self._read: Read = bytes  # returns the value
         if callable(source) and not is_traced(start) and not is_traced(t):
             m = np.array(start if start.size <= LARGEST else start.reshape(-1, start.shape[-1])[0])
@@ -273,12 +285,13 @@ class Watch:
             self._read = lambda: np.asarray(function(m, time)).tobytes()
         self._known = self._value()
         self._known = self._known if self._value() == self._known else None  # a value that varies says nothing
-        self._rows = [row for row in rows if not _has_changed(*row)]  # the others are the state of psi
+        self._rows = [row for row in self._rows if not _has_changed(*row)]  # the others are the state of psi
 
     def changed(self) -> bool:
         """Whether the code of psi, what it names, or its value at the initial point is another one than before."""
-        if any(_has_changed(*row) for row in self._rows):
-            return True
+        return super().changed() or self._value_changed()
+
+    def _value_changed(self) -> bool:
         return self._known is not None and self._value() not in (self._known, None)
 
     def _value(self) -> bytes | None:

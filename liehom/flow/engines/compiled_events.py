@@ -2,20 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Hashable, Mapping, Sequence
+from contextlib import suppress
 from functools import partial
+from types import FunctionType
 from typing import Any, NamedTuple, final
 
 import numpy as np
 
-from liehom.base.errors import InputError, LiehomError
+from liehom.base.errors import InputError, LiehomError, TraceError
 from liehom.base.typing import Array, BooleanArray, IntegerArray
 from liehom.flow.action.field import GeneratorField
-from liehom.flow.engines.lanes import LaneSteps, times_until
-from liehom.flow.engines.traced_step import args_of_lanes
+from liehom.flow.action.fingerprint import Parts
+from liehom.flow.engines.engine import Problem
+from liehom.flow.engines.lanes import LaneSteps, Memory, times_until
+from liehom.flow.engines.traced_step import all_of, arg_values, args_of_lanes, traced_args, with_traced_frame
 from liehom.flow.run.events import Events, Look
+from liehom.flow.run.records import EventLog
 from liehom.flow.run.run import Run, StepProposal
-from liehom.flow.steps.step import Generator, length
+from liehom.flow.steps.step import Generator, Step, length
+from liehom.flow.tracing.array import Traced
+from liehom.flow.tracing.graph import LaneConstant, RunConstant, Tape, TrajectoryConstant
+from liehom.flow.tracing.loop import StepGraph
+from liehom.flow.tracing.machine import PLACES, Kernel, lanes_per_register
 
 # Event functions on any number of points of a run, also those that take only what an eager run gives them. An event
 # function is called with all points at once if that gives, at some points, what it gives for them in the form of the
@@ -335,3 +344,194 @@ def _truncated(
     return all_of._replace(
         m=m, t=t, taken=taken, going=going, done=done, until=until, path=(times, points, sizes), halted=rows
     )
+
+
+# Events of plans: event functions, and the search for their zeros, are compiled too. One kernel has values and slopes
+# of all functions, and its lanes are the points of a path. Where a zero is possible, another one locates it, and its
+# lanes are steps. A call that a terminal event ends is made again in the ordinary way.
+
+
+@final
+class PointCode:
+    """Machine code of numbers that follow from others, as a step that is made once."""
+
+    def __init__(self, tape: Tape, n: int, inputs: int, outputs: Sequence[object]) -> None:
+        numbers = [tape.number(Traced(tape, x).entry) for x in outputs]
+        numbers += [tape.zero] * (inputs - len(numbers))
+        constants = tuple(map(partial(_of_coordinates, n), tape.constant_functions))
+        self.count = len(outputs)
+        graph = StepGraph(numbers, None, all_of(tape, tape.required), {}, {}, constants)
+        self.kernel = Kernel(graph, lanes_per_register())
+        if self.kernel.lane_constants:
+            raise TraceError("numbers of a trajectory are not compiled for events")
+        self.constants: Array = np.zeros(max(1, len(self.kernel.run_constants)))
+        self.memory: Memory | None = None
+        self.lanes = 0
+
+    def __call__(self, given: Sequence[Array], values: Mapping[str, float], start: Array | None = None) -> Array:
+        """Numbers (k, L) from others, each (L,), constants of the run, and initial points (N, L); NaN for none."""
+        lanes = len(given[0])
+        if self.memory is None or self.lanes != lanes:
+            self.memory, self.lanes = Memory(self.kernel, lanes, self.constants), lanes
+            fields = self.memory.integers
+            fields[PLACES["end"]], fields[PLACES["total"]] = 1, 1
+            self.memory.floats[PLACES["step_size"]] = 1.0
+            self.memory.room("stops", 2)[:] = 1.0
+            self.memory.room("out", 1, *self.memory.state.shape)
+        state, memory = self.memory.state, self.memory
+        state[:] = memory.first
+        state[: len(given), :lanes] = given
+        state[: len(given), lanes:] = state[: len(given), :1]
+        if start is not None:
+            memory.start[: len(start), :lanes], memory.start[: len(start), lanes:] = start, start[:, :1]
+        self.constants[: len(self.kernel.run_constants)] = [values.get(x, 0.0) for x in self.kernel.run_constants]
+        self.kernel.run(memory.address)
+        alive = state[self.kernel.names.index("alive"), :lanes] > 0
+        return np.where(alive, state[: self.count, :lanes], np.nan)
+
+
+def _of_coordinates(n: int, function: TrajectoryConstant) -> TrajectoryConstant:
+    """A constant of a trajectory as a function of more numbers than the coordinates of its initial point."""
+    return function if isinstance(function, RunConstant | LaneConstant) else lambda points: function(points[..., :n])
+
+
+def events_key(functions: object) -> Hashable:
+    """What two event functions share that are made at one place from the same values."""
+    if isinstance(functions, list | tuple):
+        return tuple(map(events_key, functions))
+    marks = tuple(repr(getattr(functions, name, None)) for name in ("direction", "terminal"))
+    if isinstance(functions, FunctionType):
+        with suppress(ValueError):  # a cell that is not assigned yet
+            cells = [cell.cell_contents for cell in functions.__closure__ or ()]
+            inner = [*cells, *(functions.__defaults__ or ()), *(functions.__kwdefaults__ or {}).values()]
+            return functions.__code__, id(functions.__globals__), tuple(map(id, inner)), *marks
+    return id(functions), *marks
+
+
+@final
+class PlannedEvents:
+    """The events of the calls of a plan."""
+
+    def __init__(self, problem: Problem, step: Step, dimension: int) -> None:
+        self.problem, self.step, self.dimension = problem, step, dimension
+        functions: Any = problem.options.events
+        self.n, self.lead = np.shape(problem.start)[-1], np.ndim(problem.start) - 1
+        self.functions: Any = functions
+        self.events: Events = Events(functions, problem.args)
+        self.parts = Parts(self.functions if isinstance(self.functions, list | tuple) else [self.functions])
+        self.at_points = self._at_points()
+        self.in_steps: dict[int, PointCode | None] = {}
+
+    def _traced(self, tape: Tape) -> tuple[Any, Any, GeneratorField, Events]:
+        """Point, time, field and events on a tape."""
+        args, field = self.problem.args, self.problem.field
+        known = None if args is None else traced_args(tape, args, self.lead)
+        m, t = Traced.inputs(tape, 0, self.n), Traced(tape, tape.input(self.n))
+        return m, t, field if args is None else field.with_args(known), Events(self.functions, known)
+
+    def _at_points(self) -> PointCode:
+        """Code of the values and of the slopes along the flow, ahead and back, of all functions at (m, t)."""
+        tape = Tape()
+        m, t, field, events = self._traced(tape)
+        x: Any = field.vector(m, t)
+        whole, direction = (Traced(tape, tape.run_constant(name, 1.0)) for name in ("length", "direction"))
+        size: Any = ROOT_EPS * np.minimum(length(m) / length(x), whole)
+        values = [events.value(i, t, m) for i in range(events.count)]
+        slopes = [
+            (events.value(i, t + e, m + e * x) - value) / (inwards * size)
+            for inwards in (1, -1) for e in [inwards * direction * size] for i, value in enumerate(values)
+        ]  # fmt: skip
+        return PointCode(tape, self.n, self.n + 1, [*values, *slopes])
+
+    def _in_steps(self, i: int) -> PointCode | None:
+        """Code of the zeros of g_i in a step, from its point, time, size and end, and from values and slopes of g_i at
+        both ends; None if it cannot be compiled.
+        """
+        with suppress(*FAILURES):
+            return self._zeros_in_steps(i)
+        return None
+
+    def _zeros_in_steps(self, i: int) -> PointCode:
+        """The code itself."""
+        p, n, tape = self.problem, self.n, Tape()
+        m, t, field, events = self._traced(tape)
+        more: list[Any] = [Traced(tape, tape.input(n + k)) for k in range(1, 7)]
+        h, after, start, end, ahead, back = more
+        action = with_traced_frame(tape, p.action, self.step, np.asarray(p.start).reshape(-1, n), self.dimension)
+        local = self.step.at(action, Generator(field, self.dimension), m, t[..., None])
+        yes: Any = h == h
+        step = StepProposal(local, t, m, h, after, m, yes, ~yes, p.options.nominal, {})
+
+        def slope(i: int, place: object, value: object, inwards: int, here: object) -> Array:
+            return ahead if inwards > 0 else back
+
+        look = Look(step.position, slope, h, (t, m), (after, m), yes)
+        outputs: list[Any] = []
+        for here, s in events.zeros(i, look, start, end):
+            s = np.where(here, s, 0)
+            time, point = step.position(s)
+            outputs += [here, s, time, *point]
+        tape.required.append(Traced(tape, local.valid(h[..., None])).entry)
+        return PointCode(tape, n, n + 7, outputs)
+
+    def agrees(self, points: Array, times: Array) -> bool:
+        """Whether the code has the values of the functions at points (..., N) of the run and times (...,)."""
+        wanted = np.array(self.events.values(times, points)).reshape(self.events.count, -1)
+        args = self.problem.args
+        values = {"length": 1.0, "direction": 1.0, **({} if args is None else arg_values(args, self.lead))}
+        made = self.at_points([*points.reshape(-1, self.n).T, times.reshape(-1)], values)
+        return bool(
+            np.allclose(made[: self.events.count], wanted, rtol=RTOL, atol=RTOL * np.abs(wanted).max(initial=0))
+        )
+
+    def __call__(
+        self, path: tuple[Array, Array, Array], values: Mapping[str, Any], span: tuple[float, float]
+    ) -> EventLog | None:
+        """The events of paths: times (L, j + 1), points (L, N, j + 1), sizes (L, j); None if one may end a run."""
+        (t, y, sizes), events, n = path, self.events, self.n
+        lanes, k = t.shape
+        values = {**values, "length": abs(span[1] - span[0])}
+        made = self.at_points([*y.transpose(1, 0, 2).reshape(n, -1), t.reshape(-1)], values)
+        g, ahead, back = made.reshape(3, events.count, lanes, k)
+        rows: list[tuple[int, int, float, int, Any, Array, bool]] = []
+        starts, ends = g[..., :-1], g[..., 1:]
+        same = starts * ends > 0
+        turning = same & (starts * back[..., 1:] > 0) & (starts * ahead[..., :-1] < 0)
+        for i in range(events.count) if not same.all() or turning.any() else ():
+            start, end, turns = starts[i], ends[i], turning[i]
+            for lane in np.flatnonzero(events.left(i, start[:, 0], end[:, 0])).tolist():
+                rows.append((lane, 0, 0.0, i, t[lane, 0], y[lane, :, 0].copy(), False))
+            some = (turns | events.crossed(i, start, end)).nonzero()
+            if not len(some[0]):
+                continue
+            if i not in self.in_steps:
+                self.in_steps[i] = self._in_steps(i)
+            locate, (b, j) = self.in_steps[i], some
+            if locate is None:
+                return None
+            given = [*y[b, :, j].T, t[b, j], sizes[b, j], t[b, j + 1], start[some], end[some], ahead[i, b, j]]
+            zeros = locate([*given, back[i, b, j + 1]], values, y[b, :, 0].T)
+            if np.isnan(zeros).any():
+                return None
+            for here, s, time, *point in zeros.reshape(2, n + 3, -1):
+                rows += [
+                    (int(b[p]), int(j[p]), abs(float(s[p])), i, time[p], np.array([x[p] for x in point]), True)
+                    for p in np.flatnonzero(here)
+                ]
+        log = EventLog(events.count, np.shape(self.problem.start)[:-1], n)
+        log.rows = [(i, b, time, point) for b, _, _, i, time, point, _ in sorted(rows, key=lambda row: row[:4])]
+        counts = np.zeros((events.count, lanes))
+        for b, _, _, i, _, _, counted in rows:
+            counts[i, b] += counted
+        return None if (counts >= np.array(events.terminal)[:, None]).any() else log
+
+
+def planned_events(problem: Problem, step: Step, dimension: int, made: Array) -> PlannedEvents | None:
+    """The compiled events of calls like one with these points (..., N, k); None if they cannot be compiled."""
+    try:
+        events = PlannedEvents(problem, step, dimension)
+        start, times = np.asarray(problem.start), np.full(made.shape[:-2], float(problem.span[0]))
+        end = np.where(np.isfinite(made[..., -1]), made[..., -1], start)  # an ensemble may have no end in common
+        return events if events.agrees(start, times) and events.agrees(end, times) else None
+    except FAILURES:
+        return None

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from itertools import pairwise
-from typing import Any, NamedTuple, final
+from typing import Any, NamedTuple, TypeVar, final
 
 import numpy as np
 import numpy.typing as npt
@@ -17,12 +17,11 @@ from liehom.flow.action.field import check_point
 from liehom.flow.action.space import Action
 from liehom.flow.engines.traced_step import totals_of
 from liehom.flow.run.options import END, EVENT
-from liehom.flow.run.records import OF_CHECK
 from liehom.flow.run.run import Run
 from liehom.flow.tracing.array import Traced
 from liehom.flow.tracing.graph import needed
 from liehom.flow.tracing.loop import StepGraph
-from liehom.flow.tracing.machine import Kernel, lanes_per_register
+from liehom.flow.tracing.machine import PLACES, Kernel, lanes_per_register
 
 # How many operations a step has, and how many lanes a block of its code should have.
 
@@ -60,11 +59,11 @@ GUARD_PROJECTIONS = 2  # number of random projections, one of which shows the ra
 def with_guard(graph: StepGraph, action: Action, dimension: int) -> StepGraph:
     """The graph with a `guard`: whether a point is finite and its orbit certainly of the largest dimension d, as a
     random projection of g onto d coordinates, followed by the action on the point, is injective. The number "checks" of
-    the run switches it on; graphs that record more than looks at psi, and other orbits, have none.
+    the run switches it on; graphs for other orbits have none.
     """
     rng = np.random.default_rng((0, dimension))
     generic = check_point(action.representation, rng.normal(size=(4, graph.size)))
-    if graph.largest or not OF_CHECK.issuperset(graph.summed) or graph.calls is None or dimension != int(generic.max()):
+    if dimension != int(generic.max()):
         return graph
     tape: Any = graph.point[0].tape
     m: Any = Traced.inputs(tape, 0, graph.size)
@@ -95,6 +94,8 @@ OPERATIONS_PER_CALL = 4_000_000_000
 """Scalar operations per kernel call, summed over lanes. Progress, checkpoints and Ctrl-C are handled between calls."""
 MIN_STEPS_PER_CALL = 8  # steps per kernel call at least: the time between two calls is that of some steps
 LANE_STEPS_FOR_THREADS = 50_000  # steps of a call, summed over lanes, from which on threads share the blocks
+T = TypeVar("T")
+Job = TypeVar("Job")
 _POOL: dict[int, ThreadPoolExecutor] = {}
 if hasattr(os, "register_at_fork"):
     os.register_at_fork(after_in_child=_POOL.clear)
@@ -118,6 +119,29 @@ class LaneSteps(NamedTuple):
     halted: IntegerArray | None = None  # the row of `path` in which a terminal event ends the lane, -1 for none
 
 
+@final
+class Memory:
+    """Memory of a kernel for some lanes, and its argument as integers and as floats."""
+
+    def __init__(self, kernel: Kernel, lanes: int, constants: Array) -> None:
+        self.first: Array = kernel.packed(lanes, {"alive": 1.0, **lowest_numbers(kernel.graph)})
+        self.state: Array = self.first.copy()
+        self.start: Array = np.empty((kernel.graph.size, self.first.shape[1]))
+        self.rows: Array = np.ones((max(1, len(kernel.lane_constants)), self.first.shape[1]))
+        self.arrays: dict[str, Array] = dict.fromkeys(["stops", "out", "path"], np.zeros(0))
+        self.integers: IntegerArray = kernel.argument(self.state, start=self.start, rows=self.rows, constants=constants)
+        self.floats: Array = self.integers.view(np.float64)
+        self.address: int = self.integers.ctypes.data
+
+    def room(self, name: str, rows: int, *shape: int) -> Array:
+        """The array of a name, with at least as many rows."""
+        array = self.arrays[name]
+        if len(array) < rows:
+            array = self.arrays[name] = np.empty((rows, *shape))
+            self.integers[PLACES[name]] = array.ctypes.data
+        return array
+
+
 def run_blocks(kernel: Kernel, state: Array, fields: Mapping[str, Any], steps: int) -> None:
     """Run a kernel on all blocks of a state, in threads if there is enough to do."""
     blocks = state.shape[1] // kernel.width
@@ -126,13 +150,15 @@ def run_blocks(kernel: Kernel, state: Array, fields: Mapping[str, Any], steps: i
         kernel(state, **fields)
         return
     cuts = np.linspace(0, blocks, 4 * workers + 1 if blocks >= 8 * workers else workers + 1).astype(int)
-    jobs = [
-        _pool(workers).submit(kernel, state, **{**fields, "first": int(a), "last": int(b)})
-        for a, b in pairwise(cuts)
-        if b > a
-    ]
-    for job in jobs:
-        job.result()
+    in_threads(lambda ab: kernel(state, **{**fields, "first": int(ab[0]), "last": int(ab[1])}), list(pairwise(cuts)))
+
+
+def in_threads(function: Callable[[Job], T], jobs: Sequence[Job]) -> list[T]:
+    """The values of a function that machine code makes, in threads."""
+    workers = min(cores(), len(jobs))
+    if workers == 1:
+        return [function(job) for job in jobs]
+    return [job.result() for job in [_pool(workers).submit(function, job) for job in jobs]]
 
 
 def _pool(workers: int) -> ThreadPoolExecutor:
@@ -258,6 +284,12 @@ def moved_rows(path: Array, n: int) -> tuple[Array, Array, Array]:
     some = np.flatnonzero((path[:, n + 1] != 0).any(axis=-1))
     path = path[: int(some[-1]) + 1 if len(some) else 0]
     return path[:, n], path[:, :n], path[:, n + 1]
+
+
+def stops_of(times: Array, end: float) -> Array:
+    """The times of the stops of a kernel: output times and the end, which is there twice."""
+    rest = times[: len(times) - int(len(times) > 0 and times[-1] == end)]
+    return np.concatenate([rest, [end, end]]).astype(np.float64)
 
 
 def times_until(run: Run, t: Array) -> IntegerArray:

@@ -1,25 +1,23 @@
 """LlvmEngine: runs in machine code, every step of every trajectory, in lockstep or with a size of its own.
 
-The engine keeps machine code, the traces behind it and schedules from call to call. A point that
+The engine keeps machine code and the traces behind it from call to call. A point that
 is not finite, a clock that is not admissible, or equations that were not solved end the compiled part of a trajectory
 before that step, which the automaton then makes or diagnoses.
 """
 
 from __future__ import annotations
 
-import contextlib
 from collections.abc import Callable, Hashable, Mapping
 from typing import Any, final
 
 import numpy as np
 
-from liehom.base.errors import ConvergenceError, InputError
+from liehom.base.errors import InputError
 from liehom.base.typing import Array, IntegerArray, Pytree
 from liehom.flow.action.fingerprint import Watch
-from liehom.flow.engines.compiled_events import EventSearch
+from liehom.flow.engines.compiled_events import EventSearch, planned_events
 from liehom.flow.engines.engine import Problem, executed
 from liehom.flow.engines.lanes import (
-    OPERATIONS_PER_CALL,
     HandBack,
     LaneSteps,
     block_width,
@@ -30,29 +28,26 @@ from liehom.flow.engines.lanes import (
     records_of,
     run_blocks,
     steps_per_call,
+    stops_of,
     stores_path,
     times_until,
     with_guard,
 )
 from liehom.flow.engines.lattice import LatticeStep, lattice_step, solved_on_lattice
-from liehom.flow.engines.plan import Plan, RunSchedule, Schedule, plan_key, plan_names
-from liehom.flow.engines.traced_step import arg_values, args_form, args_of_lanes, traced_step
+from liehom.flow.engines.plan import Call, Plan, call_of, form_of, frame_key, note_ranks, ranked, serves_all_points
+from liehom.flow.engines.traced_step import arg_values, args_form, traced_step
 from liehom.flow.run.check import is_unbounded
 from liehom.flow.run.options import END
 from liehom.flow.run.records import bounds_of
 from liehom.flow.run.run import Run
 from liehom.flow.run.solution import Solution
-from liehom.flow.steps.step import Generator
 from liehom.flow.tracing.graph import LaneConstant
 from liehom.flow.tracing.loop import StepGraph
 from liehom.flow.tracing.machine import Kernel
 
 COPIES_WITH_EVENTS = 8  # arrays of the size of the path, about, while events are sought
 MIN_STEPS_WITH_ENDS = 64  # with terminal events, steps in the first call; further calls double their number
-MAX_PLANNED_LANES = 100_000  # plans are kept for ensembles of at most this size, because they hold arrays of its size
-PLANNED_STEPS = 4  # a plan makes at most this multiple of the steps of the first call
-RANKED = 64  # number of initial points, at most, at which the rank of the range condition is found
-MAX_SCHEDULES = MAX_PLANS = 16  # numbers of schedules and of plans that are kept
+MAX_PLANS = 64  # number of plans that are kept
 
 
 @final
@@ -85,7 +80,7 @@ class LlvmEngine:
         runs: list[_CompiledRun] = []
 
         def fast_path(run: Run) -> Callable[[Run], bool]:
-            runs.append(_CompiledRun(run, self._store))
+            runs.append(_CompiledRun(problem, run, self._store))
             return runs[0]
 
         solution = executed(problem, fast_path)
@@ -94,63 +89,57 @@ class LlvmEngine:
         return solution
 
     def again(self, t_span: object, y0: object, options: Mapping[str, Any], args: Pytree = None) -> Solution | None:
-        """The solution of a call like one before, for other points and args; None if it needs a closer look."""
-        if not self._plans or self._watch is None or self._watch.changed():
+        """The solution of a call of a form that there was before; None if it needs a closer look."""
+        if not self._plans or self._watch is None:
             return None
-        key = plan_key(t_span, y0, options, args)
         try:
-            plan = self._plans.get(key)
-        except TypeError:  # not hashable
+            call = call_of(t_span, y0, options)
+            plan = None if call is None else self._plans.get(form_of(call, self._watch.field, args))
+            if call is None or plan is None or self._watch.changed():
+                return None
+            return plan(call, args)
+        except (TypeError, ValueError, OverflowError):  # not numbers, or not hashable
             return None
-        return None if plan is None else plan(y0, args)  # type: ignore[arg-type]
 
     def _keep_plan(self, problem: Problem, run: _CompiledRun, solution: Solution) -> None:
-        """Keep the plan of a call, if it was one that needs nothing but points and args."""
+        """Keep the plan of a call, if the trace serves all points, and nothing happens between its steps."""
         o, (_, key, graph) = problem.options, run.groups[0]
-        work = run.work * np.sum(solution.n_steps)
-        if problem.args is not None and problem.step.prepares_by_psi:
+        if len(run.groups) > 1 or graph.guard is None or solution.status != END:
             return
-        if len(run.groups) > 1 or graph.guard is None or solution.status != END or work > OPERATIONS_PER_CALL:
+        if o.checkpoint is not None or o.progress:
             return
-        if (
-            o.events is not None
-            or o.checkpoint is not None
-            or o.progress
-            or o.dense_output
-            or (run.schedule is None and o.t_eval is None)
-        ):
+        dt = None if o.dt is None else float(np.max(o.dt)) if (o.dt == np.max(o.dt)).all() else o.dt
+        start = np.asarray(problem.start)
+        call = Call(start, 0.0, 1.0, dt, o.t_eval, o.dense_output, looks=o.looks, events=o.events)
+        form = form_of(call, problem.field, problem.args)
+        dimension = int(np.max(problem.orbit_dimension))
+        known = self._plans.get(form)
+        if (known is not None and known.is_current) or not serves_all_points(problem, run.step, dimension):
             return
-        shape = np.asarray(problem.start).shape
-        if np.prod(shape[:-1]) > MAX_PLANNED_LANES:
+        events = None if o.events is None else planned_events(problem, run.step, dimension, np.asarray(solution.y))
+        if events is None and o.events is not None:
             return
-        kernel = self._store.kernel(key, graph, int(np.prod(shape[:-1], dtype=int)))
-        if not all(isinstance(number, LaneConstant) for number in kernel.lane_constants):
-            return
-        most = PLANNED_STEPS * (int(np.max(solution.n_steps)) + (0 if o.t_eval is None else len(o.t_eval)) + 1)
-        plan = Plan(kernel, run.schedule, problem, run.values, solution.report, most)
         if len(self._plans) >= MAX_PLANS:
             self._plans.pop(next(iter(self._plans)))
-        for name in plan_names(problem):
-            self._plans[name] = plan
+        kernel = self._store.kernel(key, graph, int(np.prod(start.shape[:-1], dtype=int)))
+        self._plans[form] = Plan(kernel, problem, run.step, run.work, run.prepared, events)
 
 
 @final
 class CodeStore:
-    """Traces, machine code and schedules for one field, step, exponential and clock."""
+    """Traces and machine code for one field, step, exponential and clock."""
 
     def __init__(self) -> None:
         self.graphs: dict[Hashable, StepGraph] = {}
         self.kernels: dict[Hashable, Kernel] = {}
-        self.schedules: dict[RunSchedule, Schedule] = {}
 
     def graph(self, run: Run, dimension: int, points: Array) -> tuple[Hashable, StepGraph]:
         """The graph of a step on orbits of a dimension, traced if it is not known, and its key."""
-        o, tight = run.options, run.action.tight_frame
-        frame = None if tight is None else (tight.symmetric, round(float(tight.isotropy), 9))
+        o = run.options
         uniform = o.dt is not None and bool((o.dt == np.max(o.dt, initial=0.0)).all())
         args, lead = run.field.args, len(run.shape)
         bounds = o.dt is None and (run.limits.moves, run.limits.gap is None, is_unbounded(run.limits.gap))
-        key = (dimension, uniform, bounds, o.nominal, run.step.trace_key, frame, args_form(args, lead))
+        key = (dimension, uniform, bounds, o.nominal, run.step.trace_key, frame_key(run.action), args_form(args, lead))
         if key not in self.graphs:
             limits = run.limits if o.dt is None else None
 
@@ -175,21 +164,12 @@ class CodeStore:
             self.kernels[key, width] = Kernel(graph, width)
         return self.kernels[key, width]
 
-    def schedule(self, run: Run) -> Schedule:
-        """The micro-steps of a run with steps of one size."""
-        wanted = RunSchedule.of(run, keeps=stores_path(run))
-        if wanted not in self.schedules:
-            if len(self.schedules) >= MAX_SCHEDULES:
-                self.schedules.pop(next(iter(self.schedules)))
-            self.schedules[wanted] = wanted.schedule()
-        return self.schedules[wanted]
-
 
 @final
 class _CompiledRun:
     """Steps of a run by machine code; the number of steps in one call has no effect on the results."""
 
-    def __init__(self, run: Run, store: CodeStore) -> None:
+    def __init__(self, problem: Problem, run: Run, store: CodeStore) -> None:
         if run.dtype != np.float64:
             raise InputError(
                 f"engine='llvm' computes in float64, the start is of type {run.dtype}: take engine='numpy'"
@@ -203,26 +183,14 @@ class _CompiledRun:
             lanes = np.flatnonzero(dimensions == d)
             self.groups.append((lanes, *store.graph(run, int(d), self.start[lanes])))
         self.work = max((operations(graph) for _, _, graph in self.groups), default=1)
-        self.schedule = store.schedule(run) if self.groups and self.groups[0][2].reached is None else None
+        self.total = int(np.max(np.asarray(0 if run.stops.total is None else run.stops.total), initial=0))
         latest = bounds_of((float(run.span[0]), float(run.span[1])))[1]
         self.values: dict[str, Any] = {**arg_values(run.field.args, len(run.shape)), **run.limits._asdict()}
         self.values |= {"latest": latest, "rest": float(run.rest)}
-
+        self.step, self.prepared = run.step, run.state.calls
         if len(self.start) and not run.state.taken.any() and run.step.uses_isotropy:
-            self._note_ranks(run)
-
-    def _note_ranks(self, run: Run) -> None:
-        """Record the ranks of the range condition at some of the initial points; compiled steps know of none."""
-        some = np.unique(np.linspace(0, len(self.start) - 1, min(len(self.start), RANKED)).astype(int))
-        points, times = self.start[some], np.full(len(some), float(run.span[0]))
-        dimensions = np.broadcast_to(np.asarray(run.psi.orbit_dimension), run.shape).reshape(-1)
-        args = run.field.args
-        field = run.field if args is None else run.field.with_args(args_of_lanes(args, run.shape, some))
-        psi = Generator(field, dimensions[some], points)
-        with contextlib.suppress(np.linalg.LinAlgError, ConvergenceError):  # the first step will end with it
-            step = run.step.prepare(run.action, psi, points, times)  # what it has prepared is for all lanes
-            local = step.at(run.action, psi, points, times[:, None])
-            run.state.statistics.take_lowest(local.diagnostics(np.zeros((len(some), 1))), some, times, points)
+            some = ranked(len(self.start))
+            note_ranks(run.state.statistics, problem, run.step, self.start[some], some, run.shape)
 
     def __call__(self, run: Run) -> bool:
         """Make steps until every lane is at the end or has a step that is not made here, or a call is full."""
@@ -252,10 +220,57 @@ class _CompiledRun:
         self, run: Run, code: tuple[Hashable, StepGraph], lanes: IntegerArray, back: HandBack, steps: int
     ) -> LaneSteps:
         """At most `steps` steps of some lanes by the code of a key, which have all taken as many if in lockstep."""
-        kernel = self.store.kernel(*code, len(lanes))
-        if code[1].reached is None:
-            return self._in_lockstep(run, kernel, lanes, back, int(back.taken[lanes[0]]), steps)
-        return self._by_themselves(run, kernel, lanes, back, steps)
+        kernel, graph = self.store.kernel(*code, len(lanes)), code[1]
+        n, count, samples = self.start.shape[-1], len(lanes), run.state.samples
+        times = np.zeros(0) if samples is None else samples.times
+        stops = stops_of(times, float(run.stops.end))
+        done = np.zeros(count) if samples is None else samples.done.reshape(-1)[lanes]
+        taken = back.taken[lanes]
+        rows: dict[str, Any] = {"x": back.m[lanes].T, "alive": 1.0, "count": taken, **lowest_numbers(graph)}
+        fields: dict[str, Any] = {"begin": 0, "end": steps}
+        if graph.reached is None:
+            dt, before = float(np.max(np.asarray(run.options.dt))), int(taken[0])
+            last = int(min(before + steps, self.total))
+            fields = {
+                "begin": before,
+                "end": last,
+                "total": self.total,
+                "step_size": run.direction * dt,
+                "first_stop": int(done[0]),
+            }
+            steps, rows["count"] = last - before, float(last)
+        else:
+            given = run.options.dt
+            sizes = back.h[lanes]
+            if given is not None:
+                sizes = run.direction * np.broadcast_to(given, run.shape).reshape(-1)[lanes]
+            rows |= {"t": back.t[lanes], "stop": done, "h": sizes} | ({} if graph.sizes is None else {"kept": done})
+        state = kernel.packed(count, rows)
+        out = np.empty((len(stops) + 1, n, state.shape[1]))
+        path = np.zeros((steps, n + 2, state.shape[1])) if stores_path(run) else None
+        fields |= {"stops": stops, "last_stop": len(stops) - 2, "origin": float(run.span[0]), "out": out, "path": path}
+        run_blocks(kernel, state, {**self._given(kernel, lanes), **fields}, steps)
+        row = {name: state[i, :count] for i, name in enumerate(kernel.names)}
+        alive, now = row["alive"], row["count"].astype(int)
+        if graph.reached is None:
+            reached = np.where(now >= self.total, float(run.stops.end), float(run.span[0]) + now * fields["step_size"])
+            going, ended = (alive > 0) & (last < self.total), (alive > 0) & (last == self.total)
+            until, tries = times_until(run, reached), now - taken
+        else:
+            reached, going, ended = row["t"], alive > 0, alive < 0
+            until = np.where(ended, len(times), row["stop" if graph.sizes is None else "kept"].astype(int))
+            tries = row.get("tries", now - taken)  # type: ignore[assignment]
+        calls = calls_of(kernel, row, tries)
+        if graph.first is not None:
+            calls = calls + np.isinf(sizes)
+        first, most = (int(x) for x in (done.min(), until.max(initial=0)))
+        return LaneSteps(
+            m=state[:n, :count], t=reached, taken=now, going=going, done=ended, calls=calls,
+            records=records_of(kernel, row), outputs=np.arange(first, max(first, most)),
+            points=out[first : max(first, most), :, :count], until=until,
+            path=None if path is None else moved_rows(path[..., :count], n),
+            h=row["h"] if graph.sizes is not None else None,
+        )  # fmt: skip
 
     def _looked_into(
         self, run: Run, code: tuple[Hashable, StepGraph], lanes: IntegerArray, back: HandBack, done: LaneSteps
@@ -292,83 +307,3 @@ class _CompiledRun:
             ]
             fields["rows"] = rows
         return fields
-
-    def _in_lockstep(
-        self, run: Run, kernel: Kernel, lanes: IntegerArray, back: HandBack, taken: int, steps: int
-    ) -> LaneSteps:
-        """Steps of lanes that have all taken as many."""
-        plan: Any = self.schedule
-        n, count = self.start.shape[-1], len(lanes)
-        last = min(taken + steps, plan.steps)
-        begin, end = int(plan.first[taken]), int(plan.first[last])
-        state = kernel.packed(
-            count, {"x": back.m[lanes].T, "alive": 1.0, "count": float(end), **lowest_numbers(kernel.graph)}
-        )
-        low, high = int(plan.rows[begin]), int(plan.rows[end])
-        out = np.empty((high - low, n, state.shape[1]))
-        run_blocks(
-            kernel,
-            state,
-            {
-                **self._given(kernel, lanes),
-                "begin": begin, "end": end, "sizes": plan.sizes, "times": plan.times,
-                "codes": plan.codes, "repeats": plan.repeats, "out": out.ctypes.data - low * n * state.shape[1] * 8,
-            },
-            end - begin,
-        )  # fmt: skip
-        row = {name: state[i, :count] for i, name in enumerate(kernel.names)}
-        alive = row["alive"] > 0
-        taken_now = np.where(alive, last, np.searchsorted(plan.first, row["count"], side="right") - 1)
-        reached, outputs, out = plan.reached[taken_now], plan.output[low:high], out[..., :count]
-        path = None
-        if stores_path(run):
-            ends = plan.ends[low:high]
-            number = np.arange(taken, last)[:, None]
-            sizes = plan.sizes[plan.first[1:] - 1][taken:last, None]
-            path = (np.broadcast_to(plan.reached[taken + 1 : last + 1, None], (last - taken, count)), out[ends],
-                    np.where(number < taken_now, sizes, 0.0))  # fmt: skip
-        return LaneSteps(
-            m=state[:n, :count], t=reached, taken=taken_now, going=alive & (last < plan.steps),
-            done=alive & (last == plan.steps), calls=calls_of(kernel, row, taken_now - taken),
-            records=records_of(kernel, row), outputs=outputs[outputs >= 0], points=out[outputs >= 0],
-            until=times_until(run, reached), path=path,
-        )  # fmt: skip
-
-    def _by_themselves(self, run: Run, kernel: Kernel, lanes: IntegerArray, back: HandBack, steps: int) -> LaneSteps:
-        """Steps of lanes with their own sizes and times."""
-        n, count, graph, samples = self.start.shape[-1], len(lanes), kernel.graph, run.state.samples
-        times = np.zeros(0) if samples is None else samples.times
-        at_end = len(times) > 0 and times[-1] == run.stops.end
-        stops = np.concatenate([times[: len(times) - at_end], [run.stops.end, run.stops.end]]).astype(np.float64)
-        done = np.zeros(count) if samples is None else samples.done.reshape(-1)[lanes]
-        dt = run.options.dt
-        sizes = back.h[lanes] if dt is None else run.direction * np.broadcast_to(dt, run.shape).reshape(-1)[lanes]
-        rows = {"x": back.m[lanes].T, "alive": 1.0, "count": back.taken[lanes], "t": back.t[lanes], "stop": done,
-                 "h": sizes, **lowest_numbers(graph)}  # fmt: skip
-        state = kernel.packed(count, rows if graph.sizes is None else {**rows, "kept": done})
-        out = np.empty((len(stops) + 1, n, state.shape[1]))
-        path = np.zeros((steps, n + 2, state.shape[1])) if stores_path(run) else None
-        run_blocks(
-            kernel,
-            state,
-            {
-                **self._given(kernel, lanes),
-                "begin": 0, "end": steps, "stops": stops, "last_stop": len(stops) - 2,
-                "origin": float(run.span[0]), "out": out, "path": path,
-            },
-            steps,
-        )  # fmt: skip
-        row = {name: state[i, :count] for i, name in enumerate(kernel.names)}
-        taken, reached, alive = row["count"].astype(int), row["t"], row["alive"]
-        tries = row.get("tries", taken - back.taken[lanes])
-        until = np.where(alive < 0, len(times), row["stop" if graph.sizes is None else "kept"].astype(int))
-        first = int(done.min()) if count else 0
-        return LaneSteps(
-            m=state[:n, :count], t=reached, taken=taken, going=alive > 0, done=alive < 0,
-            calls=calls_of(kernel, row, tries) + (graph.first is not None and np.isinf(sizes)),
-            records=records_of(kernel, row),
-            outputs=np.arange(first, int(until.max(initial=first))),
-            points=out[first : int(until.max(initial=first)), :, :count], until=until,
-            path=None if path is None else moved_rows(path[..., :count], n),
-            h=row["h"] if graph.sizes is not None else None,
-        )  # fmt: skip

@@ -158,14 +158,7 @@ def _traced(
     ends: tuple[float, float], limits: SizeLimits | None, stops: bool,
 ) -> StepGraph:  # fmt: skip
     n = field.representation.size
-    tight = action.tight_frame
-    if tight is None and step.uses_isotropy:
-        tight = tight_frame(action, points, orbit_dimension)
-    if tight is not None and action.inner_product.invariant:
-        form = tight.trace
-        over = tape.trajectory_constant(lambda points: orbit_dimension / ((points @ form) * points).sum(axis=-1))
-        tight = tight._replace(over=Traced(tape, over))
-    action = action.with_tight_frame(tight)
+    action = with_traced_frame(tape, action, step, points, orbit_dimension)
     m, t = Traced.inputs(tape, 0, n), Traced(tape, tape.input(n))
     h: Any = Traced(tape, tape.input(n + 1))
     psi, error_terms = Generator(_counted(tape, field), orbit_dimension), 0 if limits is None else ERROR_TERMS
@@ -201,8 +194,8 @@ def _traced(
     if limits is not None and limits.gap is not None and sizes is not None and local.estimate_order is None:
         summed |= {"looks": _number(tape, looks), "cuts": _number(tape, cuts)}
     tape.required.append(_number(tape, local.valid(size)))
-    solved = _all_of(tape, tape.required)
-    runs = _all_of(tape, [x for x in (runs, solved, _number(tape, certain)) if x is not None])
+    solved = all_of(tape, tape.required)
+    runs = all_of(tape, [x for x in (runs, solved, _number(tape, certain)) if x is not None])
     point = [_number(tape, moved[i]) for i in range(n)]
     calls = int(tape.calls.value) if tape.calls.constant else None
     if calls is None:
@@ -215,7 +208,19 @@ def _traced(
     )  # fmt: skip
 
 
-def _all_of(tape: Tape, conditions: Sequence[Expr]) -> Expr | None:
+def with_traced_frame(tape: Tape, action: Action, step: Step, points: Array, orbit_dimension: int) -> Action:
+    """The action with what a step can use of the orbits of points, with constants of the trajectories on a tape."""
+    tight = action.tight_frame
+    if tight is None and step.uses_isotropy:
+        tight = tight_frame(action, points, orbit_dimension)
+    if tight is not None and action.inner_product.invariant:
+        form = tight.trace
+        over = tape.trajectory_constant(lambda points: orbit_dimension / ((points @ form) * points).sum(axis=-1))
+        tight = tight._replace(over=Traced(tape, over))
+    return action.with_tight_frame(tight)
+
+
+def all_of(tape: Tape, conditions: Sequence[Expr]) -> Expr | None:
     """Whether all conditions hold; None if they are constants that do."""
     unsure = [x for x in conditions if x is not tape.true]
     return reduce(tape.both, unsure) if unsure else None

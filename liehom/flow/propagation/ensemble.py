@@ -23,9 +23,20 @@ from liehom.flow.action.fingerprint import events_by_name, fingerprint, source_o
 from liehom.flow.action.space import Action
 from liehom.flow.engines.arguments import EnsembleOptions, least_atol
 from liehom.flow.propagation.integration import integrate
-from liehom.flow.propagation.propagator import ATOL, RTOL, default_step, without_order_warning
+from liehom.flow.propagation.propagator import default_step, without_order_warning
 from liehom.flow.run.events import Events
-from liehom.flow.run.options import LOST, TRAJECTORY_MARK, Progress, Span, also_lost, among, overall_status, points_of
+from liehom.flow.run.options import (
+    ATOL,
+    LOST,
+    RTOL,
+    TRAJECTORY_MARK,
+    Progress,
+    Span,
+    also_lost,
+    among,
+    overall_status,
+    points_of,
+)
 from liehom.flow.run.records import ConservationReport, Report
 from liehom.flow.run.solution import Solution, as_arrays, from_arrays, warn_of_failure
 from liehom.flow.steps.step import as_step

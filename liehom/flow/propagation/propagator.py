@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, replace
@@ -46,7 +46,7 @@ from liehom.flow.methods.low_order import LieTaylor
 from liehom.flow.methods.stability import warn_of_stiffness
 from liehom.flow.methods.taylor import Taylor
 from liehom.flow.run.events import EventFunction
-from liehom.flow.run.options import Options, Span, points_of, span_of
+from liehom.flow.run.options import ATOL, RTOL, Options, Span, points_of, span_of
 from liehom.flow.run.solution import Solution, checked_path, warn_of_failure
 from liehom.flow.series.arrays import is_jax
 from liehom.flow.steps.conserving import ConservingStep
@@ -74,25 +74,28 @@ def engine_of(engine: str | Engine) -> Engine:
 class BoundCall:
     """A call of a propagator from its points; the first call checks everything, the next ones times, sizes and args."""
 
-    def __init__(
-        self,
-        problem: Callable[[Iterable[float] | Span, Pytree], Problem],
-        solve: Callable[[Problem], Solution],
-        options: Mapping[str, Any],
-        again: Callable[[Iterable[float] | Span], Solution | None] | None = None,
-    ) -> None:
-        self._problem, self._solve, self._again = problem, solve, again
+    def __init__(self, propagator: Propagator, points: Values, args: Pytree, options: CallOptions) -> None:
+        self._propagator, self._points, self._args, self._options = propagator, points, args, options
         self._dt, self._times = options.get("dt"), options.get("t_eval")
         self._first: Problem | None = None
+        self._is_new = True
 
     def __call__(self, t_span: Iterable[float] | Span, args: Pytree = None) -> Solution:
         """The trajectories over a time span, with other args if they are given."""
-        if self._again is not None and args is None and (solution := self._again(t_span)) is not None:
-            return solution
-        known = self._first
-        if known is None or (args is not None and known.args is None):
-            self._first = self._problem(t_span, args)
-            return self._solve(self._first)
+        if self._is_new and args is not None:
+            self._args = args
+        self._is_new = False
+        propagator, options = self._propagator, self._options
+        args = propagator._args_for(self._args if args is None else args)
+        solution = propagator._again(t_span, self._points, options, args)
+        return self._called(t_span, args) if solution is None else solution
+
+    def _called(self, t_span: Iterable[float] | Span, args: Pytree) -> Solution:
+        """The solution of a call that is not like one before."""
+        known, propagator = self._first, self._propagator
+        if known is None:
+            self._first = known = propagator.problem(t_span, self._points, args=args, **self._options)
+            return warned(propagator.solve(known), known, stacklevel=4)
         start: Any = known.start
         span = span_of(t_span, start.dtype)
         options, bound = known.options, known.bound
@@ -103,10 +106,9 @@ class BoundCall:
         if args is not None:
             check_numbers(args, start.shape[:-1])
             bound = known.field.with_args(args)
-        else:
-            args = known.args
         with shapes_named(args):
-            return self._solve(replace(known, span=span, options=options, bound=bound, args=args))
+            problem = replace(known, span=span, options=options, bound=bound, args=args)
+            return warned(propagator.solve(problem), problem, stacklevel=4)
 
 
 # Inspection: what a step can do at given points, without a step being made.
@@ -182,7 +184,6 @@ def inspected(problem: Problem) -> Inspection:
 # Propagator: a generator field with its method and its engine, made once and called for many starts and spans.
 
 DEFAULT_ORDER = 6  # order of the default step with fixed step sizes
-RTOL, ATOL = 1e-6, 1e-9  # default tolerances
 WARNS: ContextVar[bool] = ContextVar("WARNS", default=True)  # whether failures are reported by warnings
 
 
@@ -257,6 +258,7 @@ class Propagator:
         # an engine is for one step: the default steps for several tolerances have one each
         self._new_engine: str | None = engine if isinstance(engine, str) else None
         self._engines: dict[Step, Engine] = {}
+        self._defaults: dict[Hashable, Step] = {}
         self._nominal = checked_clock(clock)
         self._action = _action(field.representation, exponential)
 
@@ -264,14 +266,19 @@ class Propagator:
         self, t_span: Iterable[float] | Span, y0: npt.ArrayLike, *, args: Pytree = None, **options: Unpack[CallOptions]
     ) -> Solution:
         """The trajectories from y0, a `Solution`; parameters and options are those of `integrate`."""
-        engine = self._engine_for(self._step_for(**options))
-        # engines may know calls that differ in points and args only
-        again: Callable[..., Solution | None] | None = getattr(engine, "again", None)
-        solution = None if again is None else again(t_span, y0, options, self._args_for(args))
+        solution = self._again(t_span, y0, options, self._args_for(args))
         if solution is None:
             problem = self.problem(t_span, y0, args=args, **options)
             return warned(self.solve(problem), problem, stacklevel=3)
-        return warned(solution, stacklevel=3)
+        return solution
+
+    def _again(
+        self, t_span: Iterable[float] | Span, y0: npt.ArrayLike, options: CallOptions, args: Pytree
+    ) -> Solution | None:
+        """The solution of a call of a form that the engine knows; such calls come to their end as they should."""
+        again: Callable[..., Solution | None] | None
+        again = getattr(self._engine_for(self._step_for(**options)), "again", None)
+        return None if again is None else again(t_span, y0, options, args)
 
     def solve(self, problem: Problem) -> Solution:
         """The solution of a `problem` of this propagator, by its engine; by numpy if the group fixes a point."""
@@ -291,14 +298,7 @@ class Propagator:
         [0, 0]
         """
         check_option_names(set(options) - set(CallOptions.__annotations__))
-        points, default = y0 if is_jax(y0) else points_of(y0), args
-
-        def problem(t_span: Iterable[float] | Span, args: Pytree) -> Problem:
-            return self.problem(t_span, points, args=default if args is None else args, **options)
-
-        known: Any = getattr(self._engine_for(self._step_for(**options)), "again", None)
-        again = None if known is None or self.field.takes_args else (lambda t_span: known(t_span, points, options))
-        return BoundCall(problem, lambda problem: warned(self.solve(problem), problem, stacklevel=4), options, again)
+        return BoundCall(self, y0 if is_jax(y0) else points_of(y0), args, options)
 
     def inspect(self, y0: npt.ArrayLike, t: float = 0.0, *, args: Pytree = None) -> Inspection:
         """Orders, ranks and singular values of the step at points, an `Inspection`; no step is made.
@@ -356,7 +356,12 @@ class Propagator:
             return self.step
         if self._new_engine is None and self._engines:
             return next(iter(self._engines))
-        return default_step(dt, rtol, least_atol(atol, self.field.representation.size))
+        wanted: tuple[Any, ...] = (dt is None, rtol, atol)
+        if not isinstance(wanted[1], float) or not isinstance(wanted[2], float):
+            return default_step(dt, rtol, least_atol(atol, self.field.representation.size))
+        if wanted not in self._defaults:
+            self._defaults[wanted] = default_step(dt, rtol, least_atol(atol, self.field.representation.size))
+        return self._defaults[wanted]
 
     def _engine_for(self, step: Step) -> Engine:
         """The engine for a step."""

@@ -96,17 +96,17 @@ def checked(
         size = xp.where(passed > left, size * left / passed, size)
     zero: Any = 0.0 * size
     residual, wanted = look(size > 0, size, zero)
-    _, cut, _, residual, looks, cuts = _repeated(again, [wanted, size, zero, residual, zero + 1, zero])
+    _, cut, _, residual, looks, cuts = repeated(again, [wanted, size, zero, residual, zero + 1, zero])
     # psi that is not finite within the step is the reason of a size that is too small
     cut = xp.where(xp.isnan(residual), np.nan, cut)
     return Checked(xp.where(cuts > 0, cut, h), looks, cuts)
 
 
-def _repeated(body: Callable[..., list[Any]], state: list[Any]) -> Sequence[Any]:
+def repeated(body: Callable[..., list[Any]], state: list[Any], limit: int = MAX_LOOKS) -> Sequence[Any]:
     """The state after a loop while its first number, a boolean, is true somewhere: of numpy, of tracers, or of JAX."""
     first = state[0]
     if isinstance(first, Traced):
-        return while_loop(lambda *s: ((new := body(*s)), new[0]), state, first.tape, MAX_LOOKS, guarded=True)
+        return while_loop(lambda *s: ((new := body(*s)), new[0]), state, first.tape, limit, guarded=True)
     if is_jax(first):
         from jax import lax, numpy as jnp
 
@@ -115,7 +115,9 @@ def _repeated(body: Callable[..., list[Any]], state: list[Any]) -> Sequence[Any]
 
         last: list[Any] = lax.while_loop(lambda s: jnp.any(s[0]), again, state)
         return last
-    while state[0].any():
+    for _ in range(limit):
+        if not np.any(state[0]):
+            break
         state = body(*state)
     return state
 

@@ -12,14 +12,16 @@ If g has at most one extremum within each step, all of its zeros are found, exce
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any, NamedTuple, TypeAlias, final
+from typing import Any, NamedTuple, TypeAlias, cast, final
 
 import numpy as np
 
 from liehom.base.errors import InputError, displayed
 from liehom.base.typing import Array, BooleanArray, Pytree
 from liehom.flow.action.components import called_as_event, guarded
+from liehom.flow.run.check import repeated
 from liehom.flow.run.records import EventLog
+from liehom.flow.tracing.array import Traced
 
 ITERATIONS = 200
 EXTREMUM_ITERATIONS = 60
@@ -72,7 +74,14 @@ class Events:
 
     def value(self, i: int, t: Array, y: Array) -> Array:
         """g_i(t, y), shape (...,)."""
-        answer = guarded(self.functions[i], f"events[{i}]", t if np.ndim(t) else np.asarray(t)[()], y)
+        time: Any = t
+        if not isinstance(time, Traced) and not time.ndim:
+            time = np.asarray(t)[()]
+        answer = guarded(self.functions[i], f"events[{i}]", time, y)
+        point: Any = y
+        if isinstance(point, Traced):  # a function that ignores y returns a number
+            value: Any = Traced(point.tape, answer)
+            return value
         try:
             value = np.asarray(answer)
             value = value if value.dtype.kind == "f" else value.astype(np.float64, casting="same_kind")
@@ -127,22 +136,23 @@ class Events:
 
     def zeros(self, i: int, look: Look, start: Array, end: Array) -> list[tuple[BooleanArray, Array]]:
         """The zeros of g_i within a step, in the order of time: for which trajectories, and their sizes s in (0, h]."""
-        h = look.h
+        h: Any = look.h
 
         def g(s: Array) -> Array:
             return self.value(i, *look.position(s)).astype(s.dtype)
 
-        start, end = (np.asarray(x, dtype=h.dtype) for x in (start, end))
+        if not isinstance(h, Traced):
+            start, end = (np.asarray(x, dtype=h.dtype) for x in (start, end))
         turns, turn, value = self._extremum(i, g, look, start, end)
         zeros = []
         here = look.moves & self.crossed(i, start, end)
         first = turns & self.crossed(i, start, value)
-        if (here | first).any():
+        if _some(here | first):
             far, there = np.where(first, turn, h), np.where(first, value, end)
             here = here | first
             zeros.append((here, bracketed_zero(g, np.where(here, far, 0), start, there, here)))
         second = turns & self.crossed(i, value, end)
-        if second.any():
+        if _some(second):
             rest = bracketed_zero(lambda s: g(turn + s), np.where(second, h - turn, 0), value, end, second)
             zeros.append((second, turn + rest))
         return zeros
@@ -152,34 +162,36 @@ class Events:
     ) -> tuple[BooleanArray, Array, Array]:
         """Where g_i has the other sign at an extremum within the step: for which trajectories, s, and g_i there."""
         h, sign = look.h, np.sign(start)
-        nowhere = np.zeros(np.shape(h), dtype=bool), h, end
+        nowhere = h != h, h, end
         here = look.moves & (sign * end > 0)
-        if not here.any():
+        if not _some(here):
             return nowhere
         leaves = sign * look.slope(i, look.after, end, -1, here)
         here = here & (leaves > 0)
-        if not here.any():
+        if not _some(here):
             return nowhere
         approaches = -sign * look.slope(i, look.before, start, 1, here)
         here = here & (approaches > 0)
-        if not here.any():
+        if not _some(here):
             return nowhere
         guess = h * np.where(here, approaches / (approaches + leaves), 0.5)
         s, value = lowest(lambda s: sign * g(s), h, guess, (sign * start, sign * end), here)
         return here & (value < 0), s, sign * value
 
 
+def _some(where: object) -> bool:
+    """Whether a condition holds somewhere, or may do so because its values are not known."""
+    condition: Any = where
+    return isinstance(condition, Traced) or bool(np.any(condition))
+
+
 def lowest(
     f: Callable[[Array], Array], h: Array, guess: Array, ends: tuple[Array, Array], here: BooleanArray
 ) -> tuple[Array, Array]:
     """Points s between 0 and h at which f > 0 is lowest, and f(s); ends where f < 0 or f stays clear of 0."""
-    a, b, c = np.zeros_like(h), guess, h
-    fa, fc = (np.broadcast_to(np.asarray(x, dtype=h.dtype), np.shape(h)) for x in ends)
-    fb, busy, clear = f(b), here, np.zeros(np.shape(h), dtype=bool)
-    for _ in range(EXTREMUM_ITERATIONS):
-        busy = busy & (fb > 0) & (np.abs(c - a) > EXTREMUM_RTOL * np.abs(h))
-        if not busy.any():
-            break
+
+    def again(*numbers: Array) -> list[Array]:
+        busy, clear, a, b, c, fa, fb, fc = cast("list[Any]", numbers)
         x, least = _vertex((a, b, c), (fa, fb, fc))
         bracketed = (fb <= fa) & (fb <= fc)
         far = bracketed & (least > CLEAR_OF_ZERO * fb)
@@ -191,16 +203,25 @@ def lowest(
         clear = far & (np.abs(fx - least) <= PARABOLIC * fb)  # else the parabola says nothing of f
         left, lower = np.abs(x) < np.abs(b), (fx < fb) | ~bracketed
         moved = busy & (x != b)
+        outer, inner = moved & (left ^ lower), moved & ~(left ^ lower)
         a, fa, b, fb, c, fc = (
-            np.where(moved & (left != lower), np.where(lower, b, x), a),
-            np.where(moved & (left != lower), np.where(lower, fb, fx), fa),
+            np.where(outer, np.where(lower, b, x), a),
+            np.where(outer, np.where(lower, fb, fx), fa),
             np.where(moved & lower, x, b),
             np.where(moved & lower, fx, fb),
-            np.where(moved & (left == lower), np.where(lower, b, x), c),
-            np.where(moved & (left == lower), np.where(lower, fb, fx), fc),
+            np.where(inner, np.where(lower, b, x), c),
+            np.where(inner, np.where(lower, fb, fx), fc),
         )
-        busy = busy & moved
-    return b, fb
+        return [moved & unsettled(a, c, fb), clear, a, b, c, fa, fb, fc]
+
+    def unsettled(a: Array, c: Array, fb: Array) -> BooleanArray:
+        return (fb > 0) & (np.abs(c - a) > EXTREMUM_RTOL * np.abs(h))
+
+    fa, fc = (0 * h + x for x in ends)
+    fb = f(guess)
+    state = [here & unsettled(0 * h, h, fb), h != h, 0 * h, guess, h, fa, fb, fc]
+    last = repeated(again, state, EXTREMUM_ITERATIONS)
+    return last[3], last[6]
 
 
 def _vertex(points: tuple[Array, Array, Array], values: tuple[Array, Array, Array]) -> tuple[Array, Array]:
@@ -221,26 +242,25 @@ def _vertex(points: tuple[Array, Array, Array], values: tuple[Array, Array, Arra
 
 def bracketed_zero(g: Callable[[Array], Array], h: Array, start: Array, end: Array, here: BooleanArray) -> Array:
     """Zeros of g between 0 and h by Chandrupatla's method, for the trajectories `here`; the end of the bracket at h."""
-    # a is the newest point, b the other end of the bracket, c the newest of the points that are not ends any more
-    a, b, c = h, np.zeros_like(h), np.zeros_like(h)
-    ga, gb, gc = end, start, start
-    fraction = np.full(np.shape(h), 0.5, dtype=h.dtype)
     least = 2 * np.finfo(h.dtype).eps * np.abs(h)
-    busy = here & (end != 0)
-    far = h
-    for _ in range(ITERATIONS):
-        busy = busy & (np.abs(b - a) > 2 * least)
-        if not bool(np.any(busy)):
-            break
+
+    # a is the newest point, b the other end of the bracket, c the newest of the points that are not ends any more
+    def again(*numbers: Array) -> list[Array]:
+        busy, a, b, c, ga, gb, gc, fraction, far = cast("list[Any]", numbers)
         x = np.where(busy, a + fraction * (b - a), far)
         gx = g(x)
-        same = (gx > 0) == (ga > 0)
+        same = ~((gx > 0) ^ (ga > 0))
         c, gc = np.where(busy, np.where(same, a, b), c), np.where(busy, np.where(same, ga, gb), gc)
         b, gb = np.where(busy & ~same, a, b), np.where(busy & ~same, ga, gb)
         a, ga = np.where(busy, x, a), np.where(busy, gx, ga)
         far = np.where(busy, np.where(np.abs(a) > np.abs(b), a, b), far)
         far, busy = np.where(busy & (gx == 0), x, far), busy & (gx != 0)
         fraction = _next_fraction((a, b, c), (ga, gb, gc), least)
+        return [busy & (np.abs(b - a) > 2 * least), a, b, c, ga, gb, gc, fraction, far]
+
+    zero = 0 * h
+    state = [here & (end != 0) & (np.abs(h) > 2 * least), h, zero, zero, end, start, start, zero + 0.5, h]
+    far: Array = repeated(again, state, ITERATIONS)[8]
     return far
 
 

@@ -24,6 +24,7 @@ Span: TypeAlias = tuple[np.floating[Any], np.floating[Any]]
 """Start and end of the time span, in the floating type of the points."""
 
 
+RTOL, ATOL = 1e-6, 1e-9  # default tolerances
 END, EVENT, NOT_FINITE, PSI, CLOCK, TOO_SMALL, IMPLICIT, LINEAR, TOO_MANY, CONE = 0, 1, -1, -2, -3, -4, -5, -6, -7, -8
 MESSAGES = {
     END: "The solver successfully reached the end of the integration interval.",

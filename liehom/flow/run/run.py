@@ -58,6 +58,7 @@ from liehom.flow.series.arrays import in_lanes
 from liehom.flow.series.jet import Jet
 from liehom.flow.steps.expansion import flow_series
 from liehom.flow.steps.step import Diagnostics, Generator, LocalStep, Step, length
+from liehom.flow.tracing.array import Traced
 
 # RunState, the part of a run that changes from step to step. Checkpoints save it, and after an interruption it is
 # rolled back to the last whole step. Steps replace the arrays of the state and never write into them, so a snapshot
@@ -193,7 +194,9 @@ class StepProposal:
         passed = s if self.nominal else self.local.time(s)
         low, high = np.minimum(self.t, self.after), np.maximum(self.t, self.after)
         t = np.where(s == self.h, self.after, np.clip(self.t + passed, low, high))
-        return t, np.asarray(self.local.point(s[..., None]))
+        y: Any = self.local.point(s[..., None])
+        y = y if isinstance(y, Traced) else np.asarray(y)
+        return t, y
 
     def point(self, time: Array, here: BooleanArray) -> Array:
         """The points (..., N) at a time within the step, for the lanes `here`."""

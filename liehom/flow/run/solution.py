@@ -13,7 +13,7 @@ import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from pathlib import Path
-from typing import Any, BinaryIO, final
+from typing import TYPE_CHECKING, Any, BinaryIO, final
 
 import numpy as np
 import numpy.typing as npt
@@ -267,12 +267,25 @@ class Solution(Displayed):
     nlu: int = field(default=0)
     # makes what `sol` would be with dense output, for plots; neither written to files nor pickled
     _steps: Callable[[], DenseSolution] | None = field(default=None, init=False)
+    # makes the entries that are not there yet
+    _others: Callable[[], Mapping[str, object]] | None = field(default=None, init=False)
+
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> object:
+            others = None if name == "_others" else self._others
+            if others is None:
+                raise AttributeError(f"a Solution has no entry {name!r}", name=name, obj=self)
+            for key, value in others().items():
+                object.__setattr__(self, key, value)
+            object.__setattr__(self, "_others", None)
+            return getattr(self, name)
 
     def __getstate__(self) -> list[object]:
-        return [getattr(self, entry.name) for entry in fields(self) if entry.name != "_steps"]
+        return [getattr(self, entry.name) for entry in fields(self) if entry.name[0] != "_"]
 
     def __setstate__(self, state: list[object]) -> None:
-        for entry, value in zip(fields(self), [*state, None], strict=True):
+        for entry, value in zip(fields(self), [*state, None, None], strict=True):
             object.__setattr__(self, entry.name, value)
 
     @property
@@ -349,6 +362,16 @@ class Solution(Displayed):
         shown = [n for n in SUMMARY if n != "statuses" or np.ndim(self.statuses)]
         width = max(map(len, shown)) + 1
         return "\n".join(f"{name:>{width}}: {_summary_entry(self[name], width + 2)}" for name in shown)
+
+
+def solution_of(t: Array, y: Array, status: int, others: Callable[[], Mapping[str, object]]) -> Solution:
+    """A solution whose other entries are made when one of them is asked for."""
+    solution, put = object.__new__(Solution), object.__setattr__
+    put(solution, "t", t)
+    put(solution, "y", y)
+    put(solution, "status", status)
+    put(solution, "_others", others)
+    return solution
 
 
 def with_steps(solution: Solution, steps: Callable[[], DenseSolution]) -> Solution:

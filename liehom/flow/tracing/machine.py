@@ -24,7 +24,7 @@ from liehom.flow.tracing.array import Traced
 from liehom.flow.tracing.graph import Expr, LaneConstant, RunConstant, TrajectoryConstant
 from liehom.flow.tracing.llvm_text import LIBM
 from liehom.flow.tracing.loop import StepGraph
-from liehom.flow.tracing.run_text import FIELDS, Constant, run_module, state_names
+from liehom.flow.tracing.run_text import FIELDS, FLOATS, Constant, run_module, state_names
 
 Engine: TypeAlias = Any
 """An execution engine of llvmlite, which has no types."""
@@ -215,7 +215,7 @@ class Kernel:
         argument = np.zeros(len(FIELDS), dtype=np.int64)
         count = state.shape[1]
         for name, value in {"state": state, "lanes": count, "last": count // self.width, **fields}.items():
-            if name == "origin":
+            if name in FLOATS:
                 argument.view(np.float64)[PLACES[name]] = value
             elif value is not None:
                 argument[PLACES[name]] = value.ctypes.data if isinstance(value, np.ndarray) else value

@@ -2,10 +2,13 @@
 
 A *block* is `width` lanes (trajectories); all steps of a block are made before the next block. There are two loops.
 
-* *In lockstep*: steps of one size without a time reparametrization. A schedule, made beforehand, gives the size and the
-  time of each micro-step, and what becomes of its point: it is stored, or the lane moves there, or both.
-* *By itself*: each lane has its own sizes and times. Input N + 2 is the time of the next stop (an output time or the
-  end). The graph says whether the stop is within the step; the point is then that at the stop.
+* *In lockstep*: steps of one size without a time reparametrization, the last of them to the end. Where a stop (an
+  output time or the end) is within a step, a *micro-step* from the same point goes to the stop first.
+* *By itself*: each lane has its own sizes and times. Input N + 2 is the time of the next stop. The graph says whether
+  the stop is within the step; the point is then that at the stop.
+
+`stops` are the times of the stops, the last of them the end, and the end again. Row k of `out` is the point at stop k,
+row k of `path` is step number `begin` + k.
 
 In a lane whose point is not finite, or whose step is not valid, nothing changes from then on (`alive` is 0).
 """
@@ -16,17 +19,17 @@ from collections.abc import Sequence
 from typing import TypeAlias, final
 
 from liehom.flow.tracing.graph import Expr, needed
-from liehom.flow.tracing.llvm_text import Body, Writer
+from liehom.flow.tracing.llvm_text import Body, Writer, number
 from liehom.flow.tracing.loop import StepGraph
 
 FIELDS = (
     "state", "start", "lanes", "first", "last", "begin", "end", "constants", "rows", "out", "path",
-    "sizes", "times", "codes", "repeats", "stops", "last_stop", "origin",
+    "stops", "last_stop", "origin", "step_size", "total", "first_stop",
 )  # fmt: skip
-"""Entries of the argument of `run`, each of 8 bytes."""
-POINTERS = frozenset(
-    ["state", "start", "constants", "rows", "out", "path", "sizes", "times", "codes", "repeats", "stops"]
-)
+"""Entries of the argument of `run`, each of 8 bytes. The last three are for steps in lockstep: their size, their number
+up to the end, and the number of the first stop."""
+POINTERS = frozenset(["state", "start", "constants", "rows", "out", "path", "stops"])
+FLOATS = frozenset(["origin", "step_size"])
 METADATA = """\
 attributes #0 = { nounwind "prefer-vector-width"="512" }
 !0 = !{!"branch_weights", i32 1, i32 1000}
@@ -87,7 +90,7 @@ class _RunWriter:
         self.w.lines.append("define void @run(ptr noalias %argument) #0 {")
         self.label("entry")
         for place, name in enumerate(FIELDS):
-            kind = "ptr" if name in POINTERS else "double" if name == "origin" else "i64"
+            kind = "ptr" if name in POINTERS else "double" if name in FLOATS else "i64"
             here = self.w.emit(f"getelementptr i64, ptr %argument, i64 {place}")
             self.line(f"%{name} = load {kind}, ptr {here}, align 8")
         self.line(
@@ -204,20 +207,37 @@ class _RunWriter:
     def _alive(self) -> str:
         return self.w.emit(f"fcmp ogt {self.v} %alive, {self.w.splat(0.0)}")
 
-    def _go_on(self, end: str, again: str, after: str) -> None:
+    def _go_on(self, now: str, end: str, again: str, after: str) -> None:
         """Branch to a block while steps and lanes are left, else to the block after the loop."""
-        fewer = self.w.emit(f"icmp slt i64 %k.next, %{end}")
+        fewer = self.w.emit(f"icmp slt i64 {now}, {end}")
         self.line(f"br i1 {self.w.emit(f'and i1 %going, {fewer}')}, label %{again}, label %{after}")
+
+    def _store_path(self, kept: str, values: dict[str, str], after: str) -> None:
+        """Store the points, the time and the size of step k as a row of `path`, if it is kept, and begin a block."""
+        w = self.w
+        self.line(f"br i1 {kept}, label %store, label %{after}")
+        self.label("store")
+        first = w.emit(f"mul i64 {w.emit('sub i64 %k, %begin')}, {self.n + 2}")
+        for i, value in enumerate([*[f"%x{i}.next" for i in range(self.n)], values["t"], values["h"]]):
+            place = self._place("%path", w.emit(f"add i64 {first}, {i}"))
+            self.line(f"store {self.v} {value}, ptr {place}, align 8")
+        self.line(f"br label %{after}")
+        self.label(after)
 
 
 @final
 class _Lockstep(_RunWriter):
-    """Micro-steps of a schedule: `sizes`, `times`, and `codes`: bit 0 whether to go there, the rest the row of `out`.
+    """Steps number `begin` to `end`, of `size`; step number `total` goes to the end, which is the last of the `stops`.
 
-    Consecutive micro-steps of one size and code, up to number `repeats` of the first, are a *segment*. A micro-step
-    that is stored, or does not go on, is a segment of its own. Numbers that depend on the size alone are computed once
-    for a segment. `count` of a lane that fails is the micro-step that failed.
+    Consecutive steps without a stop are a *segment*. A micro-step, a step that ends at a stop, and one that is stored
+    are segments of their own. Numbers that depend on the size alone are computed once for a segment. `count` of a lane
+    that fails is the step that failed.
     """
+
+    def _time(self, k: str) -> str:
+        """The time after k steps, without round-off that adds up."""
+        way = self.w.emit(f"fmul double {self.w.emit(f'sitofp i64 {k} to double')}, %step_size")
+        return self.w.emit(f"fadd double %origin, {way}")
 
     def _loop_head(self, state: dict[str, str], before: str) -> None:
         w, v = self.w, self.v
@@ -225,29 +245,55 @@ class _Lockstep(_RunWriter):
         self.line("br label %segment")
         self.label("segment")
         self.line(
-            f"%segment.k = phi i64 [%begin, %{before}], [%k.next, %segment.end]",
+            f"%segment.k = phi i64 [%begin, %{before}], [%k.after, %segment.end]",
+            f"%next.stop = phi i64 [%first_stop, %{before}], [%stop.after, %segment.end]",
             f"%segment.whole = phi i1 [{all_alive}, %{before}], [%whole.made, %segment.end]",
             *[f"%{name}.old = phi {v} [{state[name]}, %{before}], [%{name}.next, %segment.end]" for name in self.names],
+            "%more = add i64 %segment.k, 1",
+            "%closing = icmp eq i64 %more, %total",
+            "%place = getelementptr double, ptr %stops, i64 %next.stop",
+            "%wanted = load double, ptr %place, align 8",
+            "%place.end = getelementptr double, ptr %stops, i64 %last_stop",
+            "%end.time = load double, ptr %place.end, align 8",
         )
-        self.h = self._shared("%sizes", "%segment.k")
-        for name, array in (("code", "codes"), ("repeated", "repeats")):
-            here = w.emit(f"getelementptr i64, ptr %{array}, i64 %segment.k")
-            self.line(f"%{name} = load i64, ptr {here}, align 8")
+        here, there = self._time("%segment.k"), self._time("%more")
         self.line(
-            "%within = icmp slt i64 %repeated, %end",
-            "%until = select i1 %within, i64 %repeated, i64 %end",
-            "br label %step",
+            "%upwards = fcmp oge double %step_size, 0.0",
+            f"%there = select i1 %closing, double %end.time, double {there}",
+            "%earlier = fcmp olt double %wanted, %there",
+            "%later = fcmp ogt double %wanted, %there",
+            "%within = select i1 %upwards, i1 %earlier, i1 %later",
+            "%at = fcmp oeq double %wanted, %there",
+            "%stops.here = or i1 %within, %at",
+            "%goal = select i1 %within, double %wanted, double %there",
+            f"%rest = fsub double %goal, {here}",
+            "%odd = or i1 %within, %closing",
+            "%segment.size = select i1 %odd, double %rest, double %step_size",
+            "%alone = or i1 %stops.here, %odd",
+            "%single = or i1 %alone, %keeps",
         )
+        # the steps up to the one before the next stop; with fewer of them there are more segments, and the same numbers
+        steps = w.emit(f"fdiv double {w.emit('fsub double %wanted, %origin')}, %step_size")
+        fewer = w.emit(f"fsub double {steps}, {number(1.0)}")
+        last = w.emit("sitofp i64 %end to double")
+        capped = w.emit(f"select i1 {w.emit(f'fcmp olt double {fewer}, {last}')}, double {fewer}, double {last}")
+        whole = w.emit(f"fptosi double {capped} to i64")
+        ahead = w.emit(f"icmp sgt i64 {whole}, %more")
+        long = w.emit(f"select i1 {ahead}, i64 {whole}, i64 %more")
+        self.line(f"%until = select i1 %single, i64 %more, i64 {long}")
+        self.h = w.spread("%segment.size")
+        self.line("br label %step")
+        self.segment = w.label
         self.label("step")
         self.line(
-            "%k = phi i64 [%segment.k, %segment], [%k.next, %made]",
-            "%whole = phi i1 [%segment.whole, %segment], [%whole.made, %made]",
-            *[f"%{name} = phi {v} [%{name}.old, %segment], [%{name}.made, %made]" for name in self.names],
+            f"%k = phi i64 [%segment.k, %{self.segment}], [%k.next, %made]",
+            f"%whole = phi i1 [%segment.whole, %{self.segment}], [%whole.made, %made]",
+            *[f"%{name} = phi {v} [%{name}.old, %{self.segment}], [%{name}.made, %made]" for name in self.names],
         )
 
     def _loop(self) -> None:
         w = self.w
-        body = self._body({self.n: self._shared("%times", "%k"), self.n + 1: self.h})
+        body = self._body({self.n: w.spread(self._time("%k")), self.n + 1: self.h})
         new = {f"x{i}": body.name(x) for i, x in enumerate(self.graph.point)} | self._recorded(body)
         valid, before = self._valid(body), w.label
         # a predicted branch costs nothing; selections would lengthen the dependency chain from step to step
@@ -264,7 +310,7 @@ class _Lockstep(_RunWriter):
             f"%going = phi i1 [true, %{before}], [%going.mixed, %mixed]",
             "%k.next = add i64 %k, 1",
         )
-        self._go_on("until", "step", "ended")
+        self._go_on("%k.next", "%until", "step", "ended")
         self._segment_end()
 
     def _mixed(self, new: dict[str, str], valid: str) -> None:
@@ -272,9 +318,9 @@ class _Lockstep(_RunWriter):
         self.label("mixed")
         alive = self._alive()
         go, fails = self._and(valid, alive), self._and(alive, self._not(valid))
-        number = w.spread(w.emit("sitofp i64 %k to double"))
+        here = w.spread(w.emit("sitofp i64 %k to double"))
         changed = {name: (go, value) for name, value in new.items()}
-        changed |= {"alive": (fails, w.splat(FAILED)), "count": (fails, number)}
+        changed |= {"alive": (fails, w.splat(FAILED)), "count": (fails, here)}
         for name, (where, value) in changed.items():
             self.line(f"%{name}.mixed = select {w.mask} {where}, {self.v} {value}, {self.v} %{name}")
         self.line(f"%whole.mixed = and i1 {w.all(go)}, true")
@@ -282,23 +328,26 @@ class _Lockstep(_RunWriter):
         self.line("br label %made")
 
     def _segment_end(self) -> None:
-        """Store the points, and go there or back to the points before, as the code says."""
+        """Store the points at a stop, and go there, or back to the points before a micro-step."""
         w = self.w
         self.label("ended")
-        row = w.emit("ashr i64 %code, 1")
-        self.line(f"br i1 {w.emit(f'icmp sge i64 {row}, 0')}, label %store, label %segment.end")
-        self.label("store")
-        first = w.emit(f"mul i64 {row}, {self.n}")
+        self.line("br i1 %stops.here, label %output, label %onwards")
+        self.label("output")
+        first = w.emit(f"mul i64 %next.stop, {self.n}")
         for i in range(self.n):
             place = self._place("%out", w.emit(f"add i64 {first}, {i}"))
             self.line(f"store {self.v} %x{i}.made, ptr {place}, align 8")
-        self.line("br label %segment.end")
-        self.label("segment.end")
-        self.line("%goes = trunc i64 %code to i1")
+        self.line("br label %onwards")
+        self.label("onwards")
         for name in self.names:
             old = f"%{name}.old" if name.startswith(("x", "e")) else f"%{name}.made"
-            self.line(f"%{name}.next = select i1 %goes, {self.v} %{name}.made, {self.v} {old}")
-        self._go_on("end", "segment", "block.end")
+            self.line(f"%{name}.next = select i1 %within, {self.v} {old}, {self.v} %{name}.made")
+        passed = w.emit("zext i1 %stops.here to i64")
+        self.line(f"%stop.after = add i64 %next.stop, {passed}", "%k.after = select i1 %within, i64 %k, i64 %k.next")
+        kept = w.emit(f"and i1 %keeps, {w.emit('xor i1 %within, true')}")
+        moved = w.emit(f"fcmp ogt {self.v} %alive.made, {w.splat(0.0)}")
+        self._store_path(kept, {"t": w.spread("%there"), "h": self._select(moved, self.h, w.splat(0.0))}, "segment.end")
+        self._go_on("%k.after", "%end", "segment", "block.end")
 
 
 @final
@@ -363,10 +412,10 @@ class _OwnSizes(_RunWriter):
             f"%moved = phi {w.mask} [{w.splat(True)}, %{before}], [%moved.mixed, %mixed.end]",
             f"%going = phi i1 [true, %{before}], [%going.mixed, %mixed.end]",
         )
-        self._store_path(size)
-        self.label("step.end")
+        moved = self._select("%moved", size, w.splat(0.0))
+        self._store_path("%keeps", {"t": "%t.next", "h": moved}, "step.end")
         self.line("%k.next = add i64 %k, 1")
-        self._go_on("end", "step", "block.end")
+        self._go_on("%k.next", "%end", "step", "block.end")
 
     def _mixed(self, new: dict[str, str], valid: str, accepted: str, reached: str) -> None:
         """Lanes that do different things: move, reach a stop or the end, try another size, fail."""
@@ -403,9 +452,9 @@ class _OwnSizes(_RunWriter):
         """Store the points of the lanes in the rows of these numbers."""
         w = self.w
         self.label("output")
-        for lane, number in enumerate(self._integers(row)):
+        for lane, place_of in enumerate(self._integers(row)):
             place = w.emit(f"add i64 %lane, {lane}")
-            first = w.emit(f"mul i64 {number}, {self.n}")
+            first = w.emit(f"mul i64 {place_of}, {self.n}")
             for i in range(self.n):
                 start = w.emit(f"mul i64 {w.emit(f'add i64 {first}, {i}')}, %lanes")
                 here = w.emit(f"getelementptr double, ptr %out, i64 {w.emit(f'add i64 {start}, {place}')}")
@@ -415,15 +464,3 @@ class _OwnSizes(_RunWriter):
         self.line("br label %mixed.end")
         self.label("mixed.end")
         self.line("br label %made")
-
-    def _store_path(self, size: str) -> None:
-        """Store times, points and sizes of this step as row k of `path`; size 0 in lanes that did not move."""
-        w, v, rows = self.w, self.v, self.n + 2
-        self.line("br i1 %keeps, label %store, label %step.end")
-        self.label("store")
-        first = w.emit(f"mul i64 {w.emit('sub i64 %k, %begin')}, {rows}")
-        moved = self._select("%moved", size, w.splat(0.0))
-        for i, value in enumerate([*[f"%x{i}.next" for i in range(self.n)], "%t.next", moved]):
-            place = self._place("%path", w.emit(f"add i64 {first}, {i}"))
-            self.line(f"store {v} {value}, ptr {place}, align 8")
-        self.line("br label %step.end")

@@ -111,7 +111,7 @@ def test_loops_within_loops_by_both_emitters() -> None:
     for width in (1, 8):
         kernel = Kernel(StepGraph([found], None, None, {}, {}), width)
         state = kernel.packed(8, {"x": values[None], "alive": 1.0})
-        kernel(state, end=1, sizes=np.ones(1), times=np.zeros(1), codes=np.array([-1]), repeats=np.array([1]))
+        kernel(state, end=1, total=1, step_size=1.0, stops=np.ones(2), out=np.empty((1, 1, 8)))
         np.testing.assert_allclose(state[0], np.sqrt(values), rtol=1e-12)
 
 

@@ -1,6 +1,7 @@
 """Calls of a propagator that differ in the points only."""
 
 import pickle
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -8,7 +9,9 @@ import pytest
 
 import liehom as lh
 from liehom.base.errors import InputError
+from liehom.flow.engines import llvm_engine, plan
 from liehom.flow.engines.llvm_engine import LlvmEngine
+from liehom.flow.steps import Conserving
 from tests.flow.engines.test_compiled import BODY, START, sphere
 
 pytest.importorskip("llvmlite")
@@ -94,8 +97,8 @@ def test_a_trajectory_that_fails_is_made_from_the_beginning() -> None:
 
 
 @pytest.mark.filterwarnings("ignore:status -1")
-@pytest.mark.parametrize("change", [{"dt": 0.2}, {"t_eval": [1.0]}, {"max_steps": 3}, {"rtol": 1e-3}], ids=str)
-def test_another_call_is_made_from_the_beginning(change: dict[str, Any]) -> None:
+@pytest.mark.parametrize("change", [{"t_eval": [1.0]}, {"max_steps": 3}, {"dt": None}, {"dense_output": True}], ids=str)
+def test_a_call_of_another_form_is_made_from_the_beginning(change: dict[str, Any]) -> None:
     made, engine = propagator(step=lh.RKMK("rk4"))
     made(SPAN, START, dt=0.1)
     options: dict[str, Any] = {"dt": 0.1, **change}
@@ -180,3 +183,281 @@ def test_a_propagator_that_has_compiled_can_be_pickled() -> None:
     made = lh.Propagator(lh.GeneratorField(lh.adjoint(lh.so(3)), ["-m0", "-m1/2", "-m2/4"]), engine="llvm")
     expected = made(SPAN, START, dt=0.1).y
     np.testing.assert_array_equal(pickle.loads(pickle.dumps(made))(SPAN, START, dt=0.1).y, expected)
+
+
+# -- one plan for all calls of a form ----------------------------------------------------------------------
+RATES = np.array([1.0, 0.5, 0.25])
+
+
+def energy(m: Any) -> Any:
+    return (m * m * RATES).sum(axis=-1)
+
+
+def kicked(m: Any, t: Any) -> Any:
+    return -m * RATES + np.stack([np.sin(3 * t), 0 * t, 0 * t], axis=-1)
+
+
+KICKED = lh.GeneratorField(lh.adjoint(lh.so(3)), kicked)
+VARIANTS: dict[str, tuple[lh.GeneratorField, Any, dict[str, Any]]] = {
+    "fixed": (BODY, lh.Taylor(8), {"dt": 0.1}),
+    "fixed, forced": (KICKED, lh.RKMK("rk4"), {"dt": 0.07}),
+    "fixed, t_eval": (KICKED, lh.Taylor(6), {"dt": 0.1, "t_eval": [0.05, 0.1, 0.77]}),
+    "fixed, dense": (BODY, lh.Taylor(8), {"dt": 0.1, "t_eval": [0.77], "dense_output": True}),
+    "fixed, default step": (BODY, None, {"dt": 0.2}),
+    "adapted": (KICKED, lh.Taylor(8), {"rtol": 1e-9}),
+    "adapted, default step": (BODY, None, {}),
+    "adapted, dense": (BODY, lh.Taylor(8), {"rtol": 1e-4, "dense_output": True}),
+    "adapted, limits": (KICKED, lh.Taylor(8), {"max_step": 0.2, "min_step": 1e-6, "first_step": 0.01, "looks": 20}),
+    "adapted, t_eval": (BODY, lh.Taylor(8), {"t_eval": np.array([0.3, 0.7]), "atol": 1e-7}),
+    "rk45": (BODY, lh.RKMK("rk45"), {"rtol": 1e-3}),
+    "rodas4": (KICKED, "rodas4", {"rtol": 1e-3}),
+    "Corrected": (BODY, lh.Corrected(lh.Euler(), 4), {"dt": 0.1}),
+    "Corrected, adapted": (BODY, lh.Corrected(lh.Euler(), 4), {"rtol": 1e-5}),
+    "Conserving": (BODY, Conserving(lh.LieTaylor(4), energy), {"dt": 0.1}),
+    "midpoint": (BODY, "midpoint", {"dt": 0.1}),
+}  # fmt: skip
+
+
+def assert_same(sol: Any, fresh: Any) -> None:
+    """Bit for bit, with all entries."""
+    for name in ("y", "t", "n_steps", "statuses"):
+        np.testing.assert_array_equal(sol[name], fresh[name])
+    assert (sol.status, sol.message, sol.nfev, sol.report) == (0, fresh.message, fresh.nfev, fresh.report)
+    assert (sol.t_events, sol.y_events, sol.njev, sol.nlu) == (None, None, 0, 0)
+    assert (sol.sol is None) == (fresh.sol is None)
+    if sol.sol is not None:
+        places = np.linspace(float(np.min(sol.sol.t_min)), float(np.max(sol.sol.t_max)), 7)
+        np.testing.assert_array_equal(sol.sol(places), fresh.sol(places))
+
+
+@pytest.mark.parametrize("count", [1, 5])
+@pytest.mark.parametrize("name", VARIANTS)
+def test_calls_of_one_form_are_those_of_a_fresh_propagator(
+    name: str, count: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    field, step, options = VARIANTS[name]
+    counts: list[int] = []
+    trace, prepare = llvm_engine.traced_step, type(lh.Taylor(2)).prepare
+    monkeypatch.setattr(llvm_engine, "traced_step", lambda *a, **o: counts.append(1) or trace(*a, **o))
+    monkeypatch.setattr(type(lh.Taylor(2)), "prepare", lambda *a: counts.append(1) or prepare(*a))
+    made, engine = propagator(field, step)
+    made((0.0, 1.0), sphere(count)[0] if count == 1 else sphere(count), **options)
+    traced = len(counts)
+    for k, span in enumerate([(0.0, 1.0), (-0.25, 1.5), (0.0, 0.78)]):
+        points = sphere(3 * count)[k * count : (k + 1) * count]
+        y0 = points[0] if count == 1 else points
+        more = {name: options[name] / (1 + k / 8) for name in ("dt", "rtol") if name in options}
+        sol = made(span, y0, **{**options, **more})
+        assert (engine.solved, len(counts)) == (1, traced)
+        assert_same(sol, propagator(field, step)[0](span, y0, **{**options, **more}))
+        counts[traced:] = []
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda span, y0, dt: (list(span), y0, dt), lambda span, y0, dt: (np.array(span), y0, dt),
+        lambda span, y0, dt: (span, y0.tolist(), dt), lambda span, y0, dt: (span, tuple(y0.tolist()), np.float64(dt)),
+        lambda span, y0, dt: ((0, 1), y0, np.array(dt)), lambda span, y0, dt: (map(np.float64, span), y0, dt),
+    ],
+)  # fmt: skip
+def test_lists_and_numbers_of_numpy_are_the_same_call(change: Callable[..., Any]) -> None:
+    made, engine = propagator(step=lh.Taylor(8))
+    wanted = made((0.0, 1.0), START, dt=0.125)
+    span, y0, dt = change((0.0, 1.0), START, 0.125)
+    np.testing.assert_array_equal(made(span, y0, dt=dt).y, wanted.y)
+    assert engine.solved == 1
+
+
+def test_points_of_integers_and_lists_of_times_are_the_same_call() -> None:
+    made, engine = propagator(step=lh.Taylor(8))
+    wanted = made((0.0, 1.0), [0.0, 1.0, 2.0], dt=0.125, t_eval=[0.5, 1])
+    for times in ([0.5, 1], (0.5, 1.0), np.array([0.5, 1.0])):
+        np.testing.assert_array_equal(made((0, 1), np.array([0, 1, 2]), dt=0.125, t_eval=times).y, wanted.y)
+    assert engine.solved == 1
+
+
+BAD: list[dict[str, Any]] = [
+    {"dt": -0.1}, {"dt": np.nan}, {"dt": "x"}, {"dt": 1e-17}, {"dt": [0.1, 0.2]}, {"dt": np.ma.masked_array(0.1)},
+    {"dt": 1j}, {"t_eval": [2.0]}, {"t_eval": [0.5, 0.25]}, {"t_eval": [np.nan]}, {"t_eval": 0.5},
+    {"dt": None, "rtol": -1.0}, {"dt": None, "rtol": 0.0, "atol": 0.0}, {"max_step": 0.0}, {"max_steps": -1},
+    {"min_step": 2.0, "max_step": 1.0}, {"looks": -1}, {"looks": True}, {"first_step": -1.0}, {"span": (0.0, np.inf)},
+    {"span": (0.0,)}, {"span": 3.0}, {"span": "01"}, {"y0": [np.nan, 0.0, 1.0]}, {"y0": np.ones(2)}, {"y0": ["a"] * 3},
+    {"y0": np.ones(3, dtype=np.float32)}, {"y0": np.ma.masked_array(np.ones(3))}, {"y0": 1j * np.ones(3)},
+    {"y0": [1e300, 0.0, 0.0]}, {"steps": 3}, {"rtoll": 1e-3},
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("bad", BAD, ids=str)
+def test_bad_input_raises_in_every_call_what_it_raises_in_the_first(bad: dict[str, Any]) -> None:
+    made, _ = propagator(step=lh.RKMK("rk45"))
+    for options in ({"dt": 0.1}, {"dt": 0.1, "t_eval": [0.5]}, {}, {"t_eval": [0.5]}):
+        made((0.0, 1.0), START, **options)
+    given = {"dt": 0.1, **bad}
+    span, y0 = given.pop("span", (0.0, 1.0)), given.pop("y0", START)
+    errors = []
+    for go in (made, propagator(step=lh.RKMK("rk45"))[0]):
+        with pytest.raises((lh.errors.LiehomError, TypeError)) as caught:
+            go(span, y0, **given)
+        errors.append((type(caught.value), str(caught.value)))
+    assert errors[0] == errors[1]
+
+
+@pytest.mark.parametrize("threads", ["1", "3"])
+@pytest.mark.parametrize("options", [{"dt": 0.1}, {"dt": 0.1, "t_eval": [0.55, 1.0]}, {"rtol": 1e-9}], ids=str)
+def test_an_ensemble_in_pieces_is_the_ensemble(
+    options: dict[str, Any], threads: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    points = sphere(1000) * np.linspace(0.5, 3.0, 1000)[:, None]  # which take different numbers of steps
+    made, engine = propagator(step=lh.Taylor(8))
+    made((0.0, 1.0), points[::-1], **options)
+    whole = made((0.0, 1.0), points, **options)
+    monkeypatch.setenv("LIEHOM_NUM_THREADS", threads)
+    monkeypatch.setattr(plan, "CHUNK", 96)
+    assert_same(made((0.0, 1.0), points, **options), whole)
+    assert engine.solved == 1
+
+
+def test_a_small_ensemble_in_threads_is_the_ensemble(monkeypatch: pytest.MonkeyPatch) -> None:
+    made, engine = propagator(step=lh.Taylor(8))
+    points = sphere(20)
+    made((0.0, 1.0), points, dt=0.1, t_eval=[1.0])
+    monkeypatch.setenv("LIEHOM_NUM_THREADS", "1")
+    whole = made((0.0, 900.0), points, dt=0.1, t_eval=[900.0])
+    monkeypatch.setenv("LIEHOM_NUM_THREADS", "3")
+    for _ in range(5):
+        np.testing.assert_array_equal(made((0.0, 900.0), points, dt=0.1, t_eval=[900.0]).y, whole.y)
+    assert engine.solved == 1
+
+
+@pytest.mark.parametrize("count", [1, 100])
+def test_a_path_that_is_longer_than_its_memory_goes_on(count: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(plan, "ROOM", 2)
+    points = sphere(count) if count > 1 else START
+    made, engine = propagator(BODY, lh.RKMK("rk45"))
+    made((0.0, 0.1), points, rtol=1e-3)
+    sol = made((0.0, 12.0), points, rtol=1e-3)
+    assert engine.solved == 1 and np.max(sol.n_steps) > 6
+    assert_same(sol, propagator(BODY, lh.RKMK("rk45"))[0]((0.0, 12.0), points, rtol=1e-3))
+
+
+def test_entries_that_are_made_later_do_not_depend_on_what_happens_meanwhile() -> None:
+    made, _ = propagator(step=lh.Corrected(lh.Euler(), 4))
+    options = {"dt": 0.1, "dense_output": True}
+    made((0.0, 1.0), START, **options)
+    points = START.copy()
+    sol, wanted = made((0.0, 1.0), points, **options), propagator(step=made.step)[0]((0.0, 1.0), START, **options)
+    points[:] = [0.0, 0.0, 1.0]
+    made((0.0, 2.0), points, dt=0.05, dense_output=True)
+    copied = pickle.loads(pickle.dumps(propagator(step=lh.Taylor(8))[0]((0.0, 1.0), START, dt=0.1)))
+    assert copied.n_steps == 10 and copied.success
+    assert_same(sol, wanted)
+    with pytest.raises(AttributeError, match="no entry 'steps'"):
+        _ = sol.steps
+
+
+@pytest.mark.filterwarnings("ignore:status -1")
+def test_too_many_steps_are_too_many_in_every_call() -> None:
+    for options in ({"dt": 0.1}, {"rtol": 1e-3}):
+        made, _ = propagator(step=lh.Taylor(4))
+        assert made((0.0, 0.5), START, max_steps=6, **options).status == 0
+        failed, plain = (go((0.0, 9.0), START, max_steps=6, **options) for go in (made, propagator(step=made.step)[0]))
+        assert failed.status == plain.status == -1 and failed.message == plain.message
+        np.testing.assert_array_equal(failed.y, plain.y)
+
+
+def test_a_stiff_field_is_noticed_in_the_first_call_that_is_long() -> None:
+    field = lh.GeneratorField(lh.defining(lh.so(2)), lambda m, t: -300.0 * (m[..., 1:] - np.sin(t)[..., None] / 2))
+    made, _ = propagator(field, lh.RKMK("rk45"))
+    made((0.0, 0.01), np.array([1.0, 0.0]))
+    with pytest.warns(lh.errors.StiffnessWarning):
+        made((0.0, 20.0), np.array([1.0, 0.0]))
+
+
+def test_a_field_whose_globals_change_is_traced_again() -> None:
+    made, engine = propagator(lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m: -m * SCALE))
+    ends = []
+    for scale in ([1.0, 0.5, 0.25], [1.0, 2.0, 3.0]):
+        globals()["SCALE"] = np.array(scale)
+        ends.append(made((0.0, 1.0), START, dt=0.1).y[:, -1])
+    assert engine.solved == 2 and np.abs(ends[0] - ends[1]).max() > 0.1
+
+
+SCALE = RATES
+
+
+# -- events ------------------------------------------------------------------------------------------------
+def height(t: Any, m: Any) -> Any:
+    return m[..., 2] - 0.3
+
+
+def width(t: Any, m: Any) -> Any:
+    return m[..., 0] * np.cos(t / 3)
+
+
+def grazing(t: Any, m: Any) -> Any:
+    return m[..., 1] - LEVEL
+
+
+LEVEL = 0.7
+
+
+@pytest.mark.parametrize("count", [1, 4])
+@pytest.mark.parametrize(
+    ("step", "options"),
+    [
+        (lh.Taylor(8), {"dt": 0.2}), (lh.Taylor(8), {"rtol": 1e-8}), (lh.RKMK("rk4"), {"dt": 0.1, "t_eval": [1.0]}),
+        (lh.Corrected(lh.Euler(), 4), {"dt": 0.1}),
+    ], ids=str,
+)  # fmt: skip
+def test_events_of_a_second_call_are_those_of_the_first(step: Any, options: dict[str, Any], count: int) -> None:
+    made, engine = propagator(step=step)
+    points = sphere(2 * count).reshape(2, count, 3)[:, 0 if count == 1 else slice(None)]
+    given = {**options, "events": [height, width, grazing]}
+    made((0.0, 1.0), points[0], **given)
+    seen = 0
+    for span, y0 in (((0.0, 9.0), points[1]), ((1.0, -8.0), points[0])):
+        solved, sol = engine.solved, made(span, y0, **given)
+        assert engine.solved == solved
+        fresh = propagator(step=step)[0](span, y0, **given)
+        np.testing.assert_array_equal(sol.y, fresh.y)
+        for mine, other in ((sol.t_events, fresh.t_events), (sol.y_events, fresh.y_events)):
+            for a, b in zip(mine, other, strict=True):
+                assert np.shape(a) == np.shape(b) and a.dtype == b.dtype
+                for x, y in zip(np.reshape(a, -1), np.reshape(b, -1), strict=True):
+                    np.testing.assert_allclose(x, y, rtol=0, atol=1e-12)
+        seen += sum(np.size(np.concatenate(list(np.reshape(t, -1)))) if count > 1 else len(t) for t in sol.t_events)
+    assert seen >= 3 * count
+
+
+def test_an_event_function_that_is_made_in_each_call_is_compiled_once() -> None:
+    made, engine = propagator(step=lh.Taylor(8))
+    for level in (0.3, 0.3, 0.31):
+        sol = made((0.0, 9.0), START, dt=0.1, events=lambda t, m, level=level: m[..., 2] - level)
+        np.testing.assert_allclose(sol.y_events[0][:, 2], level, rtol=0, atol=1e-13)
+    assert engine.solved in (2, 3)  # 3, if the two numbers 0.3 are different objects
+
+
+def test_an_event_function_whose_globals_change_is_compiled_again() -> None:
+    made, engine = propagator(step=lh.Taylor(8))
+    for level, solved in ((0.5, 1), (0.4, 2)):
+        globals()["LEVEL"] = level
+        for _ in range(2):
+            heights = made((0.0, 9.0), START, dt=0.1, events=grazing).y_events[0][:, 1]
+            assert len(heights)
+            np.testing.assert_allclose(heights, level, rtol=0, atol=1e-13)
+            assert engine.solved == solved
+
+
+def test_terminal_events_and_functions_that_cannot_be_traced_are_made_in_the_ordinary_way() -> None:
+    def branching(t: Any, m: Any) -> Any:
+        return 1.0 if m[2] > 0.3 else -1.0
+
+    stop = lambda t, m: m[..., 2] - 0.3  # noqa: E731
+    stop.terminal = True  # type: ignore[attr-defined]
+    for event, status in ((branching, 0), (stop, 1)):
+        made, engine = propagator(step=lh.Taylor(8))
+        ends = [made((0.0, 9.0), START, dt=0.1, events=event) for _ in range(2)]
+        assert engine.solved == 2 and [sol.status for sol in ends] == [status, status]
+        np.testing.assert_array_equal(ends[0].y, ends[1].y)
+        assert len(ends[1].t_events[0]) == len(ends[0].t_events[0]) > 0

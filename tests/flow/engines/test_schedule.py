@@ -1,4 +1,4 @@
-"""Schedules of runs with steps of one size."""
+"""Schedules of runs with steps of one size, as the machine code makes them: steps, output times, the end."""
 
 from typing import Any
 
@@ -7,50 +7,47 @@ import pytest
 from hypothesis import given, settings, strategies as st
 
 import liehom as lh
-from liehom.flow.engines.plan import schedule
 from tests.sampling import examples
+
+pytest.importorskip("llvmlite")
+TURNING = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m, t: np.stack([np.cos(t), 0 * t + 1, t], axis=-1))
+START = np.array([[0.6, 0.0, 0.8], [0.0, 1.0, 0.0]])
+PROPAGATORS = {name: lh.Propagator(TURNING, "rk4", engine=name) for name in ("numpy", "llvm")}
 
 
 @settings(max_examples=examples(60), deadline=None)
 @given(
     steps=st.integers(1, 12),
+    shift=st.sampled_from([0.0, 0.3]),
     places=st.lists(st.one_of(st.floats(0, 1), st.integers(0, 12).map(lambda k: k / 12)), max_size=8),
     backwards=st.booleans(),
-    keeps=st.booleans(),
+    dense=st.booleans(),
+    lanes=st.integers(1, 2),
 )
-def test_micro_steps_go_through_all_steps_and_output_times(
-    steps: int, places: list[float], backwards: bool, keeps: bool
+def test_steps_and_output_times_are_those_of_numpy(
+    steps: int, shift: float, places: list[float], backwards: bool, dense: bool, lanes: int
 ) -> None:
     begin, end = (3.0, 1.0) if backwards else (1.0, 3.0)
     times = np.unique(begin + np.array(places, dtype=float) * (end - begin))[:: -1 if backwards else 1]
-    plan = schedule((begin, end), 2.0 / steps, steps, times, keeps=keeps)
-    now, seen, row, ends = begin, [], 0, 0
-    for k, (size, time, code) in enumerate(zip(plan.sizes, plan.times, plan.codes, strict=True)):
-        assert time == now and plan.first[ends] <= k
-        commits, stored = bool(code & 1), code >> 1
-        if stored >= 0:
-            assert stored == row == plan.rows[k] and plan.ends[row] == commits
-            if plan.output[row] >= 0:
-                seen.append(int(plan.output[row]))
-                np.testing.assert_allclose(now + size, times[seen[-1]], rtol=0, atol=1e-14)
-            row += 1
-        if commits:
-            ends += 1
-            now = plan.reached[ends]
-    begun = int(len(times) > 0 and times[0] == begin)
-    assert (now, ends, plan.steps) == (end, steps, steps) and seen == list(range(begun, len(times)))
-    assert (
-        row
-        == plan.rows[-1]
-        == (steps if keeps else 0) + int((~plan.ends).sum()) + (0 if keeps else int(plan.ends.sum()))
-    )
+    y0 = START if lanes == 2 else START[0]
+    options: dict[str, Any] = {"dt": 2.0 / (steps - shift), "dense_output": dense}
+    if places:
+        options["t_eval"] = times
+    plain, made = (PROPAGATORS[name]((begin, end), y0, **options) for name in PROPAGATORS)
+    np.testing.assert_array_equal(made.t, plain.t)
+    np.testing.assert_array_equal(made.n_steps, plain.n_steps)
+    np.testing.assert_allclose(made.y, plain.y, rtol=0, atol=1e-13)
+    if dense:
+        np.testing.assert_array_equal(made.sol.steps[0], plain.sol.steps[0])
+        np.testing.assert_array_equal(made.sol.steps[2], plain.sol.steps[2])
 
 
-def test_equal_micro_steps_are_one_segment() -> None:
-    plan = schedule((0.0, 1.0), 0.1, 10, np.array([0.35]), keeps=False)
-    assert plan.repeats.tolist() == [3, 3, 3, 4, 10, 10, 10, 10, 10, 10, 11]
-    assert set(plan.codes[plan.codes != -1]) == {0}
-    assert schedule((0.0, 1.0), 0.25, 4, None, keeps=True).repeats.tolist() == [1, 2, 3, 4]
+def test_output_times_have_no_effect_on_steps() -> None:
+    go = PROPAGATORS["llvm"]
+    wanted = go((1.0, 3.0), START, dt=0.1).y
+    some = go((1.0, 3.0), START, dt=0.1, t_eval=[1.05, 1.31, 1.32, 2.0, 2.999999, 3.0]).y
+    np.testing.assert_array_equal(some[..., -1], wanted[..., -1])
+    np.testing.assert_array_equal(some[..., 3], wanted[..., 10])
 
 
 @pytest.mark.filterwarnings("ignore:status -1")
