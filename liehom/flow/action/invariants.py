@@ -115,8 +115,8 @@ MAP_RTOL = 1e-11
 """Largest defect of the equations for F at points of the orbit."""
 FIXED_RTOL = 1e-9
 """Largest change of a point of the orbit by F, relative to its size."""
-STEPS, MORE_STEPS = 2, 6
-"""Number of times that F is applied to all points, and then at most to those that it still moves."""
+MORE_STEPS = 6
+"""Number of times that F is applied at most to points that it still moves."""
 NEAR = 0.05
 """Largest change of a point by the landing, relative to its size."""
 
@@ -127,11 +127,13 @@ class Invariants:
 
     fixed: tuple[tuple[Array, Array], ...]
     degrees: tuple[int, ...]
+    cubic_maps: list[tuple[float, ...]]
 
-    __slots__ = ("_form", "_linear", "_product", "_squares", "degrees", "fixed", "size")
+    __slots__ = ("_form", "_linear", "_product", "_squares", "cubic_maps", "degrees", "fixed", "size")
 
     def __init__(self, form: Array, fixed: Array, linear: Sequence[Array], cubic: Sequence[Array]) -> None:
         self.size: int = len(form)
+        self.cubic_maps = []  # coefficients of maps in use: code that was compiled for one serves other orbits of its kind
         self._form = None if np.array_equal(form, np.eye(len(form))) else form
         inverse, pairs = np.linalg.inv(form), list[tuple[Array, Array]]()
         for v in fixed.T:  # orthogonal for K, as vectors and linear forms of value 1
@@ -318,9 +320,9 @@ class InvariantLanding(ABC):
         """The numbers of the orbits of points (..., n), each of shape (...,); not finite if there is no landing."""
         if not isinstance(points, np.ndarray):
             return self._numbers(points)
-        if self._latest is None or self._latest[0] is not points:
+        if self._latest is None or not np.array_equal(self._latest[0], points):
             with np.errstate(all="ignore"):
-                self._latest = points, cast("list[Array]", self._numbers(points))
+                self._latest = points.copy(), cast("list[Array]", self._numbers(points))
         return cast("list[Values]", self._latest[1])
 
     def functions(self) -> list[Callable[[Array], Array]]:
@@ -328,11 +330,14 @@ class InvariantLanding(ABC):
         count = len(self.numbers(np.ones((1, self.invariants.size))))
         return [lambda points, i=i: cast(Array, self.numbers(points)[i]) for i in range(count)]  # type: ignore[misc]
 
-    def landed(self, m: Values, numbers: Sequence[Values]) -> tuple[Values, Values | BooleanArray]:
-        """The points of the orbits near m (..., n), and whether there is one, of shape (...,)."""
+    def landed(self, m: Values, numbers: Sequence[Values], steps: int = 2) -> tuple[Values, Values | BooleanArray]:
+        """The points of the orbits near m (..., n), and whether there is one, of shape (...,).
+
+        F is applied `steps` times, and further where it still moves points.
+        """
         start, before = m, m
         with np.errstate(all="ignore"):
-            for _ in range(STEPS):
+            for _ in range(steps):
                 before, m = m, self.improved(m, numbers)
             if isinstance(m, Jet):
                 return m, np.array(True)
@@ -509,6 +514,17 @@ def _cubic_landing(
             coefficients = coefficients + inverse @ (wanted - matrix @ coefficients).astype(float)
         coefficients = np.where(np.abs(coefficients) > MAP_RTOL, coefficients, 0)
         if np.abs(matrix @ coefficients - wanted).max() <= MAP_RTOL:
-            landing = CubicLanding(invariants, tuple(coefficients.tolist()) if x.dtype == float else tuple(coefficients))
+            landing = CubicLanding(invariants, _known_map(invariants, coefficients))
             return landing if all(np.isfinite(v).all() for v in landing.numbers(points)) else None
     return None
+
+
+def _known_map(invariants: Invariants, coefficients: Array) -> tuple[float, ...]:
+    """The coefficients of a map; for floats those that are in use for an orbit of the same kind."""
+    if coefficients.dtype != np.float64:
+        return tuple(coefficients)
+    for known in invariants.cubic_maps:
+        if len(known) == len(coefficients) and np.abs(coefficients - known).max() <= MAP_RTOL:
+            return known
+    invariants.cubic_maps.append(tuple(coefficients.tolist()))
+    return invariants.cubic_maps[-1]

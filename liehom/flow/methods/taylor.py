@@ -40,6 +40,7 @@ from liehom.flow.tracing.array import Traced
 MAGNUS_ORDER = 4  # order of Exp(xi) m for xi = M_0 - [M_0, M_1] and the true exponential
 SECOND_ORDER = 2  # the same for any other Exp, which agrees with the true one through order 2
 EVEN = 2.0  # a term of a Taylor series is at most this, in units of what it is if the series converges evenly
+SHARP_ORDER = 12  # order from which on a series is mostly so near the orbit that it is landed by one map
 MIN_DEFAULT_ORDER, MAX_DEFAULT_ORDER = 4, 24  # bounds for the order that follows from a tolerance
 
 
@@ -316,7 +317,8 @@ class InvariantSeries(TaylorSeries):
 
     def _landed(self, h: Values) -> tuple[Values, Values | BooleanArray]:
         if self._latest is None or self._latest[0] is not h:
-            self._latest = h, *self._landing.landed(self.series(h), self._numbers)
+            steps = 1 if len(self.trajectory) >= SHARP_ORDER else 2
+            self._latest = h, *self._landing.landed(self.series(h), self._numbers, steps)
         return self._latest[1:]
 
 
