@@ -109,8 +109,8 @@ def _integral(x: Array) -> Array:
 # * F(x) = a x + b K(x, x) x + c x.x + d x.(x.x) for the product x.x = K^-1 grad I of a cubic I: for orbits of less than
 #   the largest dimension that are isolated up to a factor, such as those of projectors, where it is 3 P^2 - 2 P^3.
 
-LEAST_PIVOT = 1e-7
-"""Smallest eigenvalue of the Gram matrix of gradients of length 1 that counts as independent."""
+LARGEST_INVERSE = 1e4
+"""Largest entry of the inverse Gram matrix of the E_i, relative to their lengths: else K(E_i, E_j) is nearly singular."""
 MAP_RTOL = 1e-11
 """Largest defect of the equations for F at points of the orbit."""
 FIXED_RTOL = 1e-9
@@ -250,10 +250,10 @@ def invariants_of(representation: Representation) -> Invariants | None:
 
 def _invariants(representation: Representation) -> Invariants | None:
     n = representation.size
-    matrices = np.array([a.to_numpy() for a in representation.matrices])
-    matrices = matrices / max(float(np.abs(matrices).max(initial=0.0)), 1e-300)
     if n > LARGEST_SIZE[2]:
         return None
+    matrices = np.array([a.to_numpy() for a in representation.matrices])
+    matrices = matrices / max(float(np.abs(matrices).max(initial=0.0)), 1e-300)
     linear, quadratic = (_gradients(sparsest(invariant_polynomials(matrices, d)), n, d) for d in (1, 2))
     candidates = [q for q in (*quadratic, quadratic.sum(axis=0)) if np.linalg.cond(q) < 1 / GRADIENT_RTOL]
     if not candidates:
@@ -325,6 +325,10 @@ class InvariantLanding(ABC):
                 self._latest = points.copy(), cast("list[Array]", self._numbers(points))
         return cast("list[Values]", self._latest[1])
 
+    def serves(self, points: Array) -> bool:
+        """Whether F lands on the orbits of all points (..., n)."""
+        return all(np.isfinite(v).all() for v in cast("list[Array]", self.numbers(points)))
+
     def functions(self) -> list[Callable[[Array], Array]]:
         """The numbers as functions of the points (L, n), one by one."""
         count = len(self.numbers(np.ones((1, self.invariants.size))))
@@ -393,7 +397,9 @@ class LevelLanding(InvariantLanding):
             inverse = solve(gram, unit)
         except (np.linalg.LinAlgError, SingularError):
             inverse = gram * np.nan
-        return [*shares, *levels, *[inverse[..., i, j] for i, j in self._pairs]]
+        sizes = xp.sqrt(xp.stack([(v * v).sum(axis=-1) for v in vectors], axis=-1))
+        worst = xp.max(abs(inverse) * sizes[..., :, None] * sizes[..., None, :], axis=(-2, -1))
+        return [*shares, *levels, *[xp.where(worst <= LARGEST_INVERSE, inverse[..., i, j], np.nan) for i, j in self._pairs]]
 
     def improved(self, m: Values, numbers: Sequence[Values]) -> Values:
         x, _, vectors, levels = self._state(m)
@@ -446,7 +452,7 @@ def invariant_landing(representation: Representation, dimension: int, points: Ar
     chosen = _independent(invariants, points[0].astype(float))
     if len(chosen) == wanted > 0:
         landing = LevelLanding(invariants, chosen)
-        return landing if _is_regular(landing, points) else None
+        return landing if landing.serves(points) else None
     if len(chosen) == 1 and wanted > 1 and len(invariants.degrees) > 1:
         return _cubic_landing(representation, invariants, dimension, points)
     return None
@@ -465,23 +471,10 @@ def _independent(invariants: Invariants, point: Array) -> tuple[int, ...]:
         rest = np.asarray(v / size)
         for b in basis:
             rest = rest - (rest @ b) * b
-        if np.linalg.norm(rest) > LEAST_PIVOT**0.5:
+        if np.linalg.norm(rest) > GRADIENT_RTOL**0.5:
             chosen.append(i)
             basis.append(rest / np.linalg.norm(rest))
     return tuple(chosen)
-
-
-def _is_regular(landing: LevelLanding, points: Array) -> bool:
-    """Whether the gradients of the invariants of a landing are independent, and K is nondegenerate on their span."""
-    invariants = landing.invariants
-    _, _, vectors, _ = landing._state(points.astype(float))
-    unit = np.stack([v / np.linalg.norm(v, axis=-1, keepdims=True) for v in vectors], axis=-2)
-    low = np.stack([invariants.lowered(unit[..., i, :]) for i in range(len(vectors))], axis=-2)
-    gram = low @ np.swapaxes(unit, -1, -2)
-    if not np.isfinite(gram).all():
-        return False
-    sizes = np.linalg.svd(gram, compute_uv=False)
-    return bool((sizes[..., -1] > LEAST_PIVOT * np.linalg.norm(low, axis=-1).max(axis=-1)).all())
 
 
 def _cubic_landing(
@@ -515,7 +508,7 @@ def _cubic_landing(
         coefficients = np.where(np.abs(coefficients) > MAP_RTOL, coefficients, 0)
         if np.abs(matrix @ coefficients - wanted).max() <= MAP_RTOL:
             landing = CubicLanding(invariants, _known_map(invariants, coefficients))
-            return landing if all(np.isfinite(v).all() for v in landing.numbers(points)) else None
+            return landing if landing.serves(points) else None
     return None
 
 
