@@ -131,7 +131,7 @@ class LlvmEngine:
         if len(self._plans) >= MAX_PLANS:
             self._plans.pop(next(iter(self._plans)))
         for name in plan_names(problem):
-            self._plans[name] = plan
+            self._plans.setdefault(name, plan)  # that of points on orbits of another dimension stays
 
 
 @final

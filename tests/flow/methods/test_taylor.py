@@ -90,7 +90,7 @@ def test_without_the_last_coefficient_the_order_is_one_lower(manifold: str, n: i
 @pytest.mark.parametrize(("q", "iterations"), [(5, 0), (3, 0), (3, 1), (3, 2)])
 @pytest.mark.parametrize("manifold", BY_INVARIANTS)
 def test_the_corrections_limit_the_order(manifold: str, q: int, iterations: int) -> None:
-    """Theorem 2 of theory/taylor: the error of a step after j corrections is O(h^(q (j + 1))).
+    """Theorem 3 of theory/taylor: the error of a step after j corrections is O(h^(q (j + 1))).
 
     For q = 3 the commutator is left out of xi.
     """
