@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Hashable, Sequence
+from collections.abc import Callable, Hashable, Iterable, Sequence
 from fractions import Fraction
 from itertools import combinations, combinations_with_replacement, islice
 from math import lcm
-from typing import Any, NamedTuple, cast, final
+from typing import Any, cast, final
 
 import numpy as np
 
@@ -28,8 +28,12 @@ ELEMENTS = 3
 """Number of random elements of the algebra by which invariants are sought."""
 FORM_RTOL = 1e-11
 """Largest defect of an invariant, relative to its size and that of the matrices."""
+GRADIENT_RTOL = 1e-6
+"""Smallest value of a form or gradient, relative to its factors, that is not 0."""
 DENOMINATOR = 64
 """Largest denominator of coefficients, relative to the largest one, that are recognized as rational."""
+MAX_DENOMINATOR, COEFFICIENT_RTOL = 10_000, 1e-13
+"""Largest denominator of coefficients of maps, and the largest defect at which they count as rational."""
 MAX_CHOICES = 3000
 """Number of sets of monomials of which it is asked whether an invariant has none of them."""
 
@@ -76,7 +80,9 @@ def sparsest(basis: Array) -> Array:
         rows = (basis / np.where(sizes > FORM_RTOL, sizes, 1.0))[sizes[:, 0] > FORM_RTOL]
         rows *= np.sign(rows[np.arange(len(rows)), np.abs(rows).argmax(axis=1)])[:, None]
         rows = rows[np.unique(rows.round(6), axis=0, return_index=True)[1]]
-        found = [np.linalg.svd(rows[list(c)])[2][-1] for c in islice(combinations(range(len(rows)), k - 1), MAX_CHOICES)]
+        found = [
+            np.linalg.svd(rows[list(c)])[2][-1] for c in islice(combinations(range(len(rows)), k - 1), MAX_CHOICES)
+        ]
         vectors = basis @ np.array([*found, *np.eye(k)]).T
         vectors /= np.abs(vectors).max(axis=0)
         order = np.argsort((np.abs(vectors) > FORM_RTOL).sum(axis=0), kind="stable")
@@ -99,10 +105,11 @@ def _integral(x: Array) -> Array:
 
 # The landing of a point that is near an orbit.
 #
-# Let K be a nondegenerate invariant form on V. An invariant polynomial I has the equivariant map E = K^-1 grad I. Any
-# equivariant polynomial map F that fixes a point m, and whose derivative at m is 0 on a complement of the tangent space,
-# has these properties on all of the orbit: F(p) = p, and F(p + v) is at a distance O(|v|^2) of the orbit. Repeated, F
-# lands points on the orbit, without a loss of order, as fast as Newton's method. It has one of two forms.
+# Let K be a nondegenerate invariant form on V. An invariant polynomial I has the equivariant map E = K^-1 grad I. Let F
+# be an equivariant polynomial map that fixes a point m, with a derivative at m that is 0 on a complement of the tangent
+# space. Then on all of the orbit F(p) = p, and F(p + v) is at a distance O(|v|^2) of the orbit. Repeated, F lands
+# points on the orbit, without a loss of order, as fast as Newton's method: docs/theory/taylor.md. It has one of two
+# forms.
 #
 # * F(x) = x + sum_i a_i(x) E_i(x), the a_i linear in the differences c_j - I_j(x) of the levels: if the gradients at m
 #   span a complement of the tangent space. The matrix of a is constant along the orbit, as K(E_i, E_j) is invariant.
@@ -110,7 +117,7 @@ def _integral(x: Array) -> Array:
 #   the largest dimension that are isolated up to a factor, such as those of projectors, where it is 3 P^2 - 2 P^3.
 
 LARGEST_INVERSE = 1e4
-"""Largest entry of the inverse Gram matrix of the E_i, relative to their lengths: else K(E_i, E_j) is nearly singular."""
+"""Largest entry of the inverse Gram matrix of the E_i, for E_i of length 1; else it is nearly singular."""
 MAP_RTOL = 1e-11
 """Largest defect of the equations for F at points of the orbit."""
 FIXED_RTOL = 1e-9
@@ -131,9 +138,9 @@ class Invariants:
 
     __slots__ = ("_form", "_linear", "_product", "_squares", "cubic_maps", "degrees", "fixed", "size")
 
-    def __init__(self, form: Array, fixed: Array, linear: Sequence[Array], cubic: Sequence[Array]) -> None:
+    def __init__(self, form: Array, fixed: Array, linear: Iterable[Array], cubic: Iterable[Array]) -> None:
         self.size: int = len(form)
-        self.cubic_maps = []  # coefficients of maps in use: code that was compiled for one serves other orbits of its kind
+        self.cubic_maps = []  # coefficients of maps in use: code for one serves all orbits of its kind
         self._form = None if np.array_equal(form, np.eye(len(form))) else form
         inverse, pairs = np.linalg.inv(form), list[tuple[Array, Array]]()
         for v in fixed.T:  # orthogonal for K, as vectors and linear forms of value 1
@@ -144,8 +151,9 @@ class Invariants:
             pairs.append((v, form @ v / (v @ form @ v)))
         self.fixed = tuple(pairs)
         self._linear = [None if np.allclose(q, form, rtol=0, atol=0) else _rounded(q @ inverse) for q in linear]
-        self._squares = [_map(t @ inverse) for t in cubic]
-        self._product = _map((cubic[0] + np.swapaxes(cubic[0], 0, 1)) @ inverse / 2) if len(cubic) else None
+        raised = [t @ inverse for t in cubic]
+        self._squares = [_map(t) for t in raised]
+        self._product = _map((raised[0] + np.swapaxes(raised[0], 0, 1)) / 2) if raised else None
         more = () if self._product is None else (4, 5)
         self.degrees = (*[2] * len(self._linear), *[3] * len(self._squares), *more)
 
@@ -198,10 +206,6 @@ class Invariants:
         return [*terms[:2], *[self.centred(v)[0] for v in terms[2:]]]
 
 
-GRADIENT_RTOL = 1e-6
-"""Smallest value of a form or gradient, relative to its factors, that is not 0."""
-
-
 def times(m: Values, form: Array) -> Values:
     """Q m for m (..., n) and a symmetric or transposed matrix, by its non-zero entries if it is diagonal."""
     if not np.any(form - np.diag(np.diagonal(form))):
@@ -218,16 +222,14 @@ def _rounded(x: Array) -> Array:
     return near if np.abs(x - near).max(initial=0.0) <= COEFFICIENT_RTOL * np.abs(x).max(initial=0.0) else x
 
 
-MAX_DENOMINATOR, COEFFICIENT_RTOL = 10_000, 1e-13
-"""Largest denominator of coefficients of maps, and the largest defect at which they count as rational."""
-
-
 def _map(table: Array) -> FieldMap:
     """The bilinear map of a table (n, n, n), with rational coefficients if they are near such."""
     size = float(np.abs(table).max(initial=0.0))
     places = np.argwhere(np.abs(table) > COEFFICIENT_RTOL * size)
     numbers = [Fraction(float(table[tuple(p)])).limit_denominator(MAX_DENOMINATOR) for p in places]
-    rational = all(abs(float(v) - table[tuple(p)]) <= COEFFICIENT_RTOL * size for v, p in zip(numbers, places, strict=True))
+    rational = all(
+        abs(float(v) - table[tuple(p)]) <= COEFFICIENT_RTOL * size for v, p in zip(numbers, places, strict=True)
+    )
     entries: list[Any] = [
         (*map(int, p), QQ.convert(str(v)) if rational else float(table[tuple(p)]))
         for v, p in zip(numbers, places, strict=True)
@@ -259,14 +261,13 @@ def _invariants(representation: Representation) -> Invariants | None:
     if not candidates:
         return None
     form = min(candidates, key=lambda q: float(np.abs(q / np.abs(q).max() - np.eye(n)).sum()))
-    cubic = _gradients(sparsest(invariant_polynomials(matrices, 3)), n, 3) if n <= LARGEST_SIZE[3] else []
+    cubic: Any = _gradients(sparsest(invariant_polynomials(matrices, 3)), n, 3) if n <= LARGEST_SIZE[3] else []
     try:
         result = Invariants(form, fixed := np.linalg.solve(form, linear.T), quadratic, cubic)
         # products with linear invariants are the same as invariants of lower degree on points without fixed part
         kept, q = _independent(result, np.random.default_rng(2).normal(size=n)), len(quadratic)
-        result = Invariants(
-            form, fixed, [x for i, x in enumerate(quadratic) if i in kept], [x for i, x in enumerate(cubic, q) if i in kept]
-        )
+        others = [[x for i, x in enumerate(tables, k) if i in kept] for tables, k in ((quadratic, 0), (cubic, q))]
+        result = Invariants(form, fixed, *others)
     except SingularError:
         return None
     return result if result.degrees and _are_invariant(result, matrices, form) else None
@@ -320,10 +321,11 @@ class InvariantLanding(ABC):
         """The numbers of the orbits of points (..., n), each of shape (...,); not finite if there is no landing."""
         if not isinstance(points, np.ndarray):
             return self._numbers(points)
-        if self._latest is None or not np.array_equal(self._latest[0], points):
+        known = self._latest
+        if known is None or known[0].dtype != points.dtype or not np.array_equal(known[0], points):
             with np.errstate(all="ignore"):
-                self._latest = points.copy(), cast("list[Array]", self._numbers(points))
-        return cast("list[Values]", self._latest[1])
+                known = self._latest = points.copy(), cast("list[Array]", self._numbers(points))
+        return cast("list[Values]", known[1])
 
     def serves(self, points: Array) -> bool:
         """Whether F lands on the orbits of all points (..., n)."""
@@ -364,8 +366,8 @@ class InvariantLanding(ABC):
                     if not is_lazy(m) and not again.any():
                         break
                     (again, m), _ = further(again, m)
-            change = m - start
-            return m, ~again & ((change * change).sum(axis=-1) <= NEAR**2 * (m * m).sum(axis=-1))
+            change, size = m - start, (start * start).sum(axis=-1)
+            return m, ~again & ((change * change).sum(axis=-1) <= NEAR**2 * size) & (size < np.inf)
 
 
 @final
@@ -399,7 +401,11 @@ class LevelLanding(InvariantLanding):
             inverse = gram * np.nan
         sizes = xp.sqrt(xp.stack([(v * v).sum(axis=-1) for v in vectors], axis=-1))
         worst = xp.max(abs(inverse) * sizes[..., :, None] * sizes[..., None, :], axis=(-2, -1))
-        return [*shares, *levels, *[xp.where(worst <= LARGEST_INVERSE, inverse[..., i, j], np.nan) for i, j in self._pairs]]
+        return [
+            *shares,
+            *levels,
+            *[xp.where(worst <= LARGEST_INVERSE, inverse[..., i, j], np.nan) for i, j in self._pairs],
+        ]
 
     def improved(self, m: Values, numbers: Sequence[Values]) -> Values:
         x, _, vectors, levels = self._state(m)
@@ -499,8 +505,10 @@ def _cubic_landing(
     wanted = np.concatenate([first, zero])
     for count in (3, 4):
         values = invariants.terms(first, count)
-        slopes = invariants.terms(Jet([start, normals.astype(first.dtype)]), count)
-        matrix = np.stack([np.concatenate([v, s.coefficient(1).ravel()]) for v, s in zip(values, slopes, strict=True)], axis=1)
+        slopes: list[Any] = list(invariants.terms(Jet([start, normals.astype(first.dtype)]), count))
+        matrix = np.stack(
+            [np.concatenate([v, s.coefficient(1).ravel()]) for v, s in zip(values, slopes, strict=True)], axis=1
+        )
         inverse = np.linalg.pinv(matrix.astype(float), rcond=GRADIENT_RTOL)
         coefficients = np.zeros(count, dtype=first.dtype)
         for _ in range(3):  # in the precision of the points

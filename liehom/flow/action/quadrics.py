@@ -31,6 +31,7 @@ from liehom.flow.tracing.array import Traced
 MAX_BLOCK = 24
 """Largest block of which forms other than the scalar product are sought: their equations are n^2 by n (n + 1) / 2."""
 
+
 class Block(NamedTuple):
     """Coordinates on which the group preserves a symmetric form."""
 

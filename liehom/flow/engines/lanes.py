@@ -61,7 +61,7 @@ GUARD_PROJECTIONS = 2  # number of random projections, one of which shows the ra
 def with_guard(graph: StepGraph, action: Action, dimension: int) -> StepGraph:
     """The graph with a `guard`: whether a point is finite and its orbit certainly of dimension d. A map of a random
     R^d to g, followed by the action on the point, is injective; if orbits of larger dimension exist, those of several
-    R^(d + 1) are not. The number "checks" of the run switches it on; graphs that record more than looks at psi have none.
+    R^(d + 1) are not. The number "checks" of the run switches it on; graphs with records of more than looks have none.
     """
     rng = np.random.default_rng((0, dimension))
     generic = check_point(action.representation, rng.normal(size=(4, graph.size)))

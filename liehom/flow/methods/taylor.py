@@ -291,7 +291,7 @@ class LandedSeries(TaylorSeries):
 
 @final
 class InvariantSeries(TaylorSeries):
-    """The Taylor polynomial, landed on the orbit by an equivariant map; by exponentials where it is far from the orbit."""
+    """The Taylor polynomial, landed on the orbit by an equivariant map, or from far away by exponentials."""
 
     def __init__(self, far: LandedSeries, landing: InvariantLanding, start: Values | None) -> None:
         super().__init__(far.action, far.m, far.trajectory)

@@ -1,4 +1,4 @@
-"""Invariants of low degree, and the landing by equivariant maps: what is found, that it is sound, and what is refused."""
+"""Invariants of low degree, and the landing by equivariant maps: what is found, that it is sound, refusals."""
 
 from typing import Any
 

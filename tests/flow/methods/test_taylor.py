@@ -2,11 +2,14 @@
 
 from functools import cache
 from typing import Any
+from unittest.mock import patch
 
 import numpy as np
 import pytest
 
 import liehom as lh
+from liehom.flow.action.field import check_point
+from liehom.flow.engines.llvm_engine import LlvmEngine
 from liehom.flow.methods.taylor import InvariantSeries, LandedSeries, Landing, TaylorSeries
 from liehom.flow.steps.step import Generator
 from tests.flow.methods.test_every_method import problem
@@ -154,6 +157,63 @@ def test_points_stay_on_the_orbit_over_a_long_run(manifold: str, bound: float) -
     sol = lh.integrate(p.field, (0, 300), p.starts, step=lh.Taylor(8), dt=0.25, t_eval=np.linspace(0, 300, 7))
     result = invariants(manifold, np.moveaxis(sol.y, -1, 0))
     assert sol.success and np.abs(result - result[0]).max() < bound
+
+
+def by_maps(manifold: str, h: float) -> tuple[InvariantSeries, Any]:
+    """A step that is landed by an equivariant map, and its sizes."""
+    p = problem(manifold)
+    action, psi = lh.Action(p.field.representation), Generator(p.field, spaces.make(manifold).dimension, p.starts)
+    local = lh.Taylor(4).at(action, psi, p.starts, np.zeros((len(p.starts), 1)))
+    assert isinstance(local, InvariantSeries)
+    return local, np.full((len(p.starts), 1), h)
+
+
+@pytest.mark.parametrize("manifold", BY_INVARIANTS)
+def test_long_steps_are_landed_by_exponentials(manifold: str) -> None:
+    """A series that is far from the orbit is landed as if there were no map, and the others of the ensemble by it."""
+    local, h = by_maps(manifold, 0.25)
+    long = h.copy()
+    long[::2] *= 60
+    result, far = local.point(long), local._far.point(long)
+    assert (result[::2] == far[::2]).all()
+    assert (result[1::2] == local.point(h)[1::2]).all()
+    assert (np.abs(result - far)[1::2].max(axis=-1) > 0).all()
+    assert np.abs(result - far)[1::2].max() < 1e-3
+    for points in (result, local.point(h)):
+        assert (check_point(local.action.representation, points) == spaces.make(manifold).dimension).all()
+        assert np.abs(local._landing.improved(points, local._numbers) - points).max() < 1e-13 * np.abs(points).max()
+
+
+@pytest.mark.parametrize("manifold", BY_INVARIANTS)
+def test_compiled_steps_that_are_too_long_are_those_of_numpy(manifold: str) -> None:
+    pytest.importorskip("llvmlite")
+    p = problem(manifold)
+    ends = [
+        lh.integrate(p.field, (0, 12), p.starts, step=lh.Taylor(4), dt=3.0, engine=engine).y
+        for engine in ("numpy", "llvm")
+    ]
+    assert np.isfinite(ends[0]).all()
+    assert np.abs(ends[0] - ends[1]).max() < 1e-9 * np.abs(ends[0]).max()
+
+
+@pytest.mark.parametrize("options", [{"dt": 0.1}, {"rtol": 1e-8}])
+def test_a_second_call_on_an_orbit_of_smaller_dimension_is_made_by_its_plan(options: dict[str, Any]) -> None:
+    """Points of another orbit of that dimension, and of one of larger dimension, are looked at closely."""
+    pytest.importorskip("llvmlite")
+    p = problem("CP^2")
+    propagator = lh.Propagator(p.field, step=lh.Taylor(8), engine="llvm")
+    with patch.object(LlvmEngine, "solve", autospec=True, side_effect=LlvmEngine.solve) as solve:
+        for factor, calls in ((1.0, 1), (2.0, 1), (-1.0, 2)):
+            start = factor * p.starts[1]
+            end = propagator((0, 2), start, t_eval=[2.0], **options).y
+            assert solve.call_count == calls
+            exact = lh.integrate(p.field, (0, 2), start, step=lh.LieTaylor(12), dt=0.02, t_eval=[2.0]).y
+            assert np.abs(end - exact).max() < 1e-6
+        start = problem("SU(3)/T").starts[0]
+        end = propagator((0, 2), start, t_eval=[2.0], **options).y
+        exact = lh.integrate(p.field, (0, 2), start, step=lh.LieTaylor(12), dt=0.02, t_eval=[2.0]).y
+        assert solve.call_count == 3
+        assert np.abs(end - exact).max() < 1e-6
 
 
 def test_without_the_landing_points_leave_the_orbit() -> None:
