@@ -1,4 +1,4 @@
-"""What the landing of Taylor steps costs on ten kinds of orbits: `python -m tests.benchmarks.landings`.
+"""Costs of the landing of Taylor steps on ten kinds of orbits: `python -m tests.benchmarks.landings`.
 
 The table has the processor time of a compiled step and trajectory, for one trajectory and for a thousand, as the step
 lands points and by exponentials, and how far points are from their orbits after 100,000 steps. The size of a step is
@@ -40,7 +40,7 @@ def field_on(name: str) -> lh.GeneratorField:
     """An affine generator; on orbits that are not compact one whose trajectories stay in a bounded part."""
     space, rng = orbit(name), spaces.seeded(f"affine on {name}")
     r, n = space.representation.algebra.dimension, space.representation.size
-    if name == "SE(3)*":  # the inertia of a body in a fluid, which keeps its energy
+    if name == "SE(3)*":  # a body in a fluid, whose energy bounds the points
         return lh.hamiltonian_field(lh.euclidean(3), lambda m: (m * m * [1, 0.6, 0.4, 0.5, 0.8, 1.1]).sum(-1) / 2)
     linear, constant = 0.3 * rng.normal(size=(n, r)) / np.linalg.norm(space.starts[0]), 0.3 * rng.normal(size=r)
     if name == "H^3":  # rotations only

@@ -307,7 +307,7 @@ class InvariantLanding(ABC):
     @property
     @abstractmethod
     def key(self) -> Hashable:
-        """What F depends on besides the representation and the numbers."""
+        """The data, besides the representation and the numbers, on which F depends."""
 
     @abstractmethod
     def _numbers(self, points: Values) -> list[Values]:
@@ -499,7 +499,7 @@ def _cubic_landing(
     normals = left[:, rank:].T
     span = np.linalg.svd(np.concatenate([tangent, normals]), compute_uv=False)
     if sizes[rank - 1] <= GRADIENT_RTOL * sizes[0] or span[-1] <= GRADIENT_RTOL * span[0]:
-        return None  # the normal vectors are no complement of the tangent space
+        return None  # the normal vectors do not span a complement
     start = np.broadcast_to(first, normals.shape)
     zero = np.zeros(normals.size, dtype=first.dtype)
     wanted = np.concatenate([first, zero])

@@ -69,7 +69,7 @@ def case(name: str) -> tuple[lh.Representation, Any, int, InvariantLanding]:
 
 @pytest.mark.parametrize("name", CASES)
 def test_points_near_an_orbit_land_on_it(name: str) -> None:
-    """On the orbit means: of its dimension, with its invariants; the distance to the point decreases as its square."""
+    """Landed points have the dimension and the invariants of the orbit, and one map squares the distance."""
     rho, points, dimension, landing = case(name)
     numbers, size = landing.numbers(points), np.abs(points).max()
     away = size * np.random.default_rng(6).normal(size=points.shape)
