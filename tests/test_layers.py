@@ -56,7 +56,7 @@ ORDER: dict[str, list[str]] = {
         "liehom.flow": "door tracing series action steps run methods engines propagation convergence bodies spins",
         "liehom.flow.action": (
             "maps exponential custom_exponential expression components frames field rigid_motions space fingerprint "
-            "quadrics"
+            "invariants quadrics"
         ),
         "liehom.flow.convergence": "reference orders costs",
         "liehom.flow.engines": (

@@ -8,10 +8,17 @@ from typing import Any, NamedTuple, cast, final
 import numpy as np
 
 from liehom.base.typing import Array, IntegerArray, Values
+from liehom.flow.action.invariants import (
+    DENOMINATOR,
+    FORM_RTOL,
+    GRADIENT_RTOL,
+    invariant_polynomials,
+    monomials,
+    times,
+)
 from liehom.flow.action.space import Action
 from liehom.flow.door import Representation
 from liehom.flow.series.arrays import namespace
-from liehom.flow.series.jet import Jet
 from liehom.flow.tracing.array import Traced
 
 # Orbits that are open in a product of quadrics and affine spaces, and the projection onto them.
@@ -23,12 +30,6 @@ from liehom.flow.tracing.array import Traced
 
 MAX_BLOCK = 24
 """Largest block of which forms other than the scalar product are sought: their equations are n^2 by n (n + 1) / 2."""
-ELEMENTS = 3
-"""Number of random elements of the algebra by which forms are sought."""
-FORM_RTOL = 1e-11
-"""Largest defect of an invariant form, relative to its size and that of the matrices."""
-GRADIENT_RTOL = 1e-6
-"""Smallest |Q m|, relative to |Q| |m|, at a point where the level set of a form is smooth."""
 
 
 class Block(NamedTuple):
@@ -75,12 +76,12 @@ class Quadrics:
 
     @staticmethod
     def _value(block: Block, m: Values) -> Values:
-        return (m * (m if block.form is None else _times(m, block.form))).sum(axis=-1)
+        return (m * (m if block.form is None else times(m, block.form))).sum(axis=-1)
 
     def _projected(self, block: Block, m: Values, level: Values) -> Values:
         if block.form is None:
             return cast(Values, m * namespace(m).sqrt(level / (m * m).sum(axis=-1))[..., None])
-        gradient = _times(m, block.form)
+        gradient = times(m, block.form)
         square, missing = (gradient * gradient).sum(axis=-1), level - (m * gradient).sum(axis=-1)
         # (m + x g)^T Q (m + x g) = level is a quadratic equation in x
         share, curvature = missing / square, self._value(block, gradient) / square
@@ -136,30 +137,20 @@ def invariant_form(matrices: Array) -> Array | None:
     Of several forms it is the one nearest to the scalar product.
     """
     n = matrices.shape[-1]
-    rows, columns = np.triu_indices(n)
-    basis = np.zeros((len(rows), n, n))
-    basis[np.arange(len(rows)), rows, columns] = basis[np.arange(len(rows)), columns, rows] = 1.0
-    # random elements generate the algebra; the result is checked on all matrices
-    some = matrices if len(matrices) <= ELEMENTS else np.tensordot(_mixing(len(matrices)), matrices, 1)
-    moved = np.moveaxis(np.swapaxes(some, 1, 2)[:, None] @ basis + basis @ some[:, None], 1, 0).reshape(len(basis), -1)
-    values, vectors = np.linalg.eigh(moved @ moved.T)
-    kernel = vectors[:, values <= FORM_RTOL * max(float(values[-1]), 1.0)]
-    if not kernel.shape[1]:
+    basis = invariant_polynomials(matrices, 2)
+    if not basis.shape[1]:
         return None
-    nearest = kernel @ (kernel.T @ (rows == columns).astype(float))
+    first, second = monomials(n, 2).T
+    nearest = basis @ (basis.T @ (first == second).astype(float))
     if np.abs(nearest).max() <= GRADIENT_RTOL:
-        nearest = kernel[:, 0]
-    form = np.einsum("p,pij->ij", nearest / np.abs(nearest).max(), basis)
-    near = np.array([float(Fraction(float(x)).limit_denominator(64)) for x in form.ravel()]).reshape(n, n)
+        nearest = basis[:, 0]
+    form = np.zeros((n, n))
+    form[first, second] = nearest
+    form = (form + form.T) / np.abs(form + form.T).max()
+    near = np.array([float(Fraction(float(x)).limit_denominator(DENOMINATOR)) for x in form.ravel()]).reshape(n, n)
     form = near if np.abs(form - near).max() <= FORM_RTOL else form
     defect = np.abs(np.swapaxes(matrices, 1, 2) @ form + form @ matrices).max()
     return form if defect <= FORM_RTOL else None
-
-
-def _mixing(count: int) -> Array:
-    """Coefficients of a few random elements of the algebra, of norm 1."""
-    rows = np.random.default_rng(0).normal(size=(ELEMENTS, count))
-    return rows / np.linalg.norm(rows, axis=1, keepdims=True)
 
 
 def _are_smooth(blocks: tuple[Block, ...], points: Array) -> bool:
@@ -171,16 +162,6 @@ def _are_smooth(blocks: tuple[Block, ...], points: Array) -> bool:
         if not bool((np.linalg.norm(part @ form, axis=-1) > GRADIENT_RTOL * size).all()):
             return False
     return True
-
-
-def _times(m: Values, form: Array) -> Values:
-    """Q m for m (..., n), by the non-zero entries of Q if it is diagonal."""
-    if not np.any(form - np.diag(np.diagonal(form))):
-        return m * np.diagonal(form).copy()
-    if isinstance(m, Jet | Traced) or m.dtype == object:
-        rows = [sum(float(q) * m[..., j] for j, q in enumerate(row) if q) for row in form]
-        return cast(Values, np.stack(rows, axis=-1))
-    return m @ form
 
 
 # The inverse of x -> rho(x) m in closed form, on orbits on which all its singular values agree.

@@ -50,40 +50,51 @@ def block_width(graph: StepGraph, lanes: int) -> int:
     return min(widest, 1 << (lanes - 1).bit_length())
 
 
-# A check of initial points in machine code: finite, and on an orbit of the largest dimension.
+# A check of initial points in machine code: finite, and on an orbit of the dimension for which the step was traced.
 
-GUARD_RTOL = 1e-10  # a pivot above this fraction of the trace is certainly not 0
+GUARD_RTOL = 1e-10  # a squared length above this fraction of the sum of all is certainly not 0
+GUARD_DEFECT = 1e-11  # a length below this fraction of that of the point is round-off
 GUARD_PROJECTIONS = 2  # number of random projections, one of which shows the rank
 
 
 def with_guard(graph: StepGraph, action: Action, dimension: int) -> StepGraph:
-    """The graph with a `guard`: whether a point is finite and its orbit certainly of the largest dimension d, as a
-    random projection of g onto d coordinates, followed by the action on the point, is injective. The number "checks" of
-    the run switches it on; graphs for other orbits have none.
+    """The graph with a `guard`: whether a point is finite and its orbit certainly of dimension d. A map of a random
+    R^d to g, followed by the action on the point, is injective; if orbits of larger dimension exist, those of several
+    R^(d + 1) are not. The number "checks" of the run switches it on.
     """
     rng = np.random.default_rng((0, dimension))
     generic = check_point(action.representation, rng.normal(size=(4, graph.size)))
-    if dimension != int(generic.max()):
-        return graph
+    low = dimension < int(generic.max())
     tape: Any = graph.point[0].tape
     m: Any = Traced.inputs(tape, 0, graph.size)
     frame: Any = action.infinitesimal.right(m)
-    certain: Any = False
+    size, certain, bounded = (m * m).sum(), Traced(tape, tape.false), Traced(tape, tape.true)
     for _ in range(GUARD_PROJECTIONS):
-        certain = certain | _is_injective(frame @ rng.normal(size=(action.dimension, dimension)), (m * m).sum())
+        lengths = _orthogonal_lengths(frame @ rng.normal(size=(action.dimension, dimension + low)))
+        certain = certain | _are_certain(lengths[:dimension], size)
+        bounded = bounded & (sum(lengths[dimension:]) <= GUARD_DEFECT**2 * size) if low else bounded
+    certain = certain & bounded
     unchecked = Traced(tape, tape.run_constant("checks", 0.0)) == 0
     guard = Traced(tape, unchecked | certain).entry
     return replace(graph, guard=guard, constant_functions=tuple(tape.constant_functions))
 
 
-def _is_injective(matrix: Values, scale: Values) -> Values:
-    """Whether a traced matrix (N, d) is certainly of rank d, by elimination in its Gram matrix; of entries ~ scale."""
-    gram: Any = np.swapaxes(matrix, -1, -2) @ matrix
-    total = np.trace(gram)
-    certain: Any = total > GUARD_RTOL * scale
-    for i in range(len(gram)):
-        certain = certain & (gram[i, i] > GUARD_RTOL * total)
-        gram = gram - gram[i][:, None] * gram[i][None] / gram[i, i]
+def _orthogonal_lengths(matrix: Values) -> list[Any]:
+    """Squared lengths of the columns of a traced matrix, each less its part in the span of those before it."""
+    columns, lengths = [matrix[:, i] for i in range(matrix.shape[1])], list[Any]()
+    while columns:
+        first, *columns = columns
+        lengths.append((first * first).sum())
+        columns = [c - first * ((first * c).sum() / lengths[-1]) for c in columns]
+    return lengths
+
+
+def _are_certain(lengths: Sequence[Any], scale: Values) -> Values:
+    """Whether squared lengths of vectors of entries ~ scale are certainly not 0."""
+    total: Any = sum(lengths)
+    certain = total > GUARD_RTOL * scale
+    for x in lengths:
+        certain = certain & (x > GUARD_RTOL * total)
     return certain
 
 

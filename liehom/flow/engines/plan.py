@@ -16,7 +16,7 @@ from liehom.base.errors import ConvergenceError, LiehomError
 from liehom.base.objects import refuse_masked
 from liehom.base.pytrees import check_numbers
 from liehom.base.typing import Array, IntegerArray, Pytree
-from liehom.flow.action.field import GeneratorField
+from liehom.flow.action.field import GeneratorField, check_point
 from liehom.flow.action.space import Action
 from liehom.flow.engines.arguments import with_tight_frame
 from liehom.flow.engines.compiled_events import PlannedEvents, events_key
@@ -160,12 +160,15 @@ def form_of(call: Call, field: GeneratorField, args: Pytree) -> Hashable:
 def serves_all_points(problem: Problem, step: Step, dimension: int) -> bool:
     """Whether the trace of a prepared step is that for all points on orbits of a dimension: at generic ones it is."""
     points = np.random.default_rng((1, dimension)).normal(size=(4, np.shape(problem.start)[-1]))
+    if dimension < int(check_point(problem.action.representation, points).max()):
+        # no point is generic there; the numbers of a landing are NaN at points that it does not serve
+        points = np.asarray(problem.start).reshape(-1, points.shape[-1])[:4]
     psi = Generator(problem.bound, dimension, points)
     if problem.args is not None and problem.step.prepares_by_psi:
         return False
     try:
         action = with_tight_frame(problem.action, problem.step, points, dimension)
-        other = problem.step.prepare(action, psi, points, np.full(4, float(problem.span[0])))
+        other = problem.step.prepare(action, psi, points, np.full(len(points), float(problem.span[0])))
     except (LiehomError, np.linalg.LinAlgError):
         return False
     return other.trace_key == step.trace_key and frame_key(action) == frame_key(problem.action)

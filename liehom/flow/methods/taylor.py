@@ -16,8 +16,9 @@ from typing import Any, ClassVar, NamedTuple, final
 import numpy as np
 
 from liehom.base.errors import InputError
-from liehom.base.typing import Array, IntegerArray, Values
+from liehom.base.typing import Array, BooleanArray, IntegerArray, Values
 from liehom.flow.action.exponential import TrueExponential
+from liehom.flow.action.invariants import InvariantLanding, invariant_landing
 from liehom.flow.action.quadrics import Quadrics, TightInverse, quadric_orbits, tight_inverse
 from liehom.flow.action.space import Action
 from liehom.flow.series.arrays import is_traced, namespace
@@ -39,14 +40,16 @@ from liehom.flow.tracing.array import Traced
 MAGNUS_ORDER = 4  # order of Exp(xi) m for xi = M_0 - [M_0, M_1] and the true exponential
 SECOND_ORDER = 2  # the same for any other Exp, which agrees with the true one through order 2
 EVEN = 2.0  # a term of a Taylor series is at most this, in units of what it is if the series converges evenly
+SHARP_ORDER = 12  # order from which on a series is mostly so near the orbit that it is landed by one map
 MIN_DEFAULT_ORDER, MAX_DEFAULT_ORDER = 4, 24  # bounds for the order that follows from a tolerance
 
 
 class Landing(NamedTuple):
-    """Data for the landing on the orbits of a run."""
+    """Data for the landing on the orbits of a run; by exponentials if there are neither quadrics nor invariants."""
 
-    quadrics: Quadrics | None  # onto whose level sets points are projected; if None, by exponentials
+    quadrics: Quadrics | None  # onto whose level sets points are projected
     inverse: TightInverse | None  # of x -> rho(x) m in closed form; if None, by an orthogonal decomposition
+    invariants: InvariantLanding | None  # by repetition of an equivariant map
 
 
 @final
@@ -67,6 +70,9 @@ class Taylor(Step):
     * By projection onto level sets of invariant quadratic forms, if the orbit is open in them. Spheres, hyperboloids,
       light cones and their products are such orbits. The levels are those at the start of the run.
     * By nothing, if the orbit is open in V, or in V up to constant coordinates.
+    * By an equivariant polynomial map that leaves the points of the orbit where they are and moves points next to it
+      much closer, repeated. It is found from invariants of degree 2 to 5. Orbits of matrices with given eigenvalues,
+      projective spaces, Grassmannians, Stiefel manifolds and coadjoint orbits of rigid motions are such orbits.
     * Otherwise by two exponentials, Exp(eta) Exp(xi) m. Here xi is the Magnus series of order 4 of the psi_i, and eta
       is the generator of minimal norm that moves Exp(xi) m to the series, in ceil((n + 1) / 5) - 1 iterations.
 
@@ -123,25 +129,32 @@ class Taylor(Step):
         velocity = [flow.psi(k) for k in range(self.order)]
         if error_terms and isinstance(m, np.ndarray):  # psi = sqrt(t) has no derivative at 0, and steps by tolerance
             points, velocity = _finite(points), _finite(velocity)
-        quadrics, inverse = self._landing
-        if quadrics is None:
-            return LandedSeries(action, m, points, velocity, psi.orbit_dimension, inverse)
-        return ProjectedSeries(action, m, points, quadrics, psi.start)
+        quadrics, inverse, invariants = self._landing
+        if quadrics is not None:
+            return ProjectedSeries(action, m, points, quadrics, psi.start)
+        landed = LandedSeries(action, m, points, velocity, psi.orbit_dimension, inverse)
+        return landed if invariants is None else InvariantSeries(landed, invariants, psi.start)
 
     @property
     def trace_key(self) -> Hashable:
         """How points are landed."""
-        return None if self._landing is None else tuple(part is None for part in self._landing)
+        if self._landing is None:
+            return None
+        quadrics, inverse, invariants = self._landing
+        return quadrics is None, inverse is None, None if invariants is None else invariants.key
 
     def prepare(self, action: Action, psi: Generator, m: Values, t: Values) -> Taylor:
-        """The step with the quadratic forms of the orbits of a run, or with the inverse of x -> rho(x) m on them."""
+        """The step with the landing on the orbits of a run."""
         start: Any = psi.start if psi.start is not None else m
         points = np.zeros((0, m.shape[-1])) if is_traced(start) else np.asarray(start)
-        inverse, quadrics = None, quadric_orbits(action.representation, psi.orbit_dimension, points)
+        inverse, invariants = None, None
+        quadrics = quadric_orbits(action.representation, psi.orbit_dimension, points)
         dimensions = np.unique(psi.orbit_dimension)
-        if quadrics is None and len(dimensions) == 1 and points.dtype == np.float64:
-            inverse = tight_inverse(action, points, int(dimensions[0]))
-        return self.with_prepared(_landing=Landing(quadrics, inverse))
+        if quadrics is None and len(dimensions) == 1 and points.dtype.kind == "f":
+            invariants = invariant_landing(action.representation, int(dimensions[0]), points)
+            if invariants is None and points.dtype == np.float64:
+                inverse = tight_inverse(action, points, int(dimensions[0]))
+        return self.with_prepared(_landing=Landing(quadrics, inverse, invariants))
 
 
 class TaylorSeries(LocalStep):
@@ -274,6 +287,39 @@ class LandedSeries(TaylorSeries):
             return lambda v: inverse.lifted(self.action, point, v, over)
         frame = self.action.isotropy_frame(point, self._dimension)
         return lambda v: least_generator(frame, v)
+
+
+@final
+class InvariantSeries(TaylorSeries):
+    """The Taylor polynomial, landed on the orbit by an equivariant map, or from far away by exponentials."""
+
+    def __init__(self, far: LandedSeries, landing: InvariantLanding, start: Values | None) -> None:
+        super().__init__(far.action, far.m, far.trajectory)
+        self._far, self._landing = far, landing
+        self._latest: tuple[Values, Values, Values | BooleanArray] | None = None
+        if isinstance(self.m, Traced):
+            tape = self.m.tape
+            self._numbers: Sequence[Values] = [Traced(tape, tape.trajectory_constant(f)) for f in landing.functions()]
+        else:
+            self._numbers = landing.numbers(self.m if start is None else start)
+
+    def point(self, h: Values) -> Values:
+        """Point after the step of size h (..., 1), shape (..., N)."""
+        landed, near = self._landed(h)
+        if not isinstance(near, np.ndarray | np.bool_) or near.all():
+            return landed
+        return np.where(near[..., None], landed, self._far.point(h))
+
+    def valid(self, h: Values) -> Values | bool:
+        """Whether the landing is that of a point near the orbit, on tracers; arrays are landed from anywhere."""
+        near = self._landed(h)[1]
+        return True if isinstance(near, np.ndarray | np.bool_) else near
+
+    def _landed(self, h: Values) -> tuple[Values, Values | BooleanArray]:
+        if self._latest is None or self._latest[0] is not h:
+            steps = 1 if len(self.trajectory) >= SHARP_ORDER else 2
+            self._latest = h, *self._landing.landed(self.series(h), self._numbers, steps)
+        return self._latest[1:]
 
 
 def _finite(coefficients: list[Values]) -> list[Values]:

@@ -1,38 +1,61 @@
 """Taylor steps: their orders on seven kinds of orbits with negative controls, and that they stay on the orbits."""
 
+from functools import cache
 from typing import Any
+from unittest.mock import patch
 
 import numpy as np
 import pytest
 
 import liehom as lh
-from liehom.flow.methods.taylor import LandedSeries, TaylorSeries
+from liehom.flow.action.field import check_point
+from liehom.flow.engines.llvm_engine import LlvmEngine
+from liehom.flow.methods.taylor import InvariantSeries, LandedSeries, Landing, TaylorSeries
 from liehom.flow.steps.step import Generator
 from tests.flow.methods.test_every_method import problem
 from tests.flow.propagation import spaces
 
 PROJECTED = ["S^2", "S^4", "H^3"]
-BY_EXPONENTIALS = ["CP^2", "Sym(3) at (1,2,3)", "SU(3)/T", "V_2(R^4)"]
-MANIFOLDS = [*PROJECTED, *BY_EXPONENTIALS]
-COUNTS = {2: (16, 32), 4: (16, 32), 6: (16, 32), 9: (16, 32), 10: (8, 16), 12: (6, 12), 16: (4, 7)}
+BY_INVARIANTS = ["CP^2", "Sym(3) at (1,2,3)", "SU(3)/T", "V_2(R^4)"]
+MANIFOLDS = [*PROJECTED, *BY_INVARIANTS]
+COUNTS = {2: (16, 32), 4: (16, 32), 6: (16, 32), 9: (16, 32), 10: (8, 16), 12: (8, 16), 16: (4, 7)}
 """Numbers of steps between which the order is measured, in the range of asymptotics and above round-off."""
 WINDOW = {2: 0.15, 4: 0.15, 6: 0.25, 9: 0.25, 10: 0.6, 12: 1.2, 16: 2.5}
 
 
-def run(manifold: str, step: Any, count: int, *, change: Any = None) -> float:
+@cache
+def precise(manifold: str) -> tuple[Any, Any]:
+    """Starts and ends of `problem` in extended precision.
+
+    Rounded points of CP^2 are on orbits of larger dimension next to it, and a landing puts them back.
+    """
+    p = problem(manifold)
+    if manifold != "CP^2":
+        return p.starts.astype(np.longdouble), p.end
+    x = spaces.seeded(manifold).normal(size=(len(p.starts), 8)).astype(np.longdouble)
+    point = np.round(spaces.unitary_point([1, 1, -2]), 12).astype(np.longdouble)
+    starts = lh.Action(p.field.representation).act(x, np.broadcast_to(point, x.shape))
+    assert np.abs(starts - p.starts).max() < 1e-13
+    end = lh.integrate(p.field, (0, p.t), starts, step=lh.LieTaylor(14), dt=p.t / 80, t_eval=[p.t])
+    return starts, end.y[..., 0]
+
+
+def run(manifold: str, step: Any, count: int, *, change: Any = None, by_exponentials: bool = False) -> float:
     """The error, relative to the points, after `count` steps in extended precision; `change` spoils each step."""
     p = problem(manifold)
-    m = p.starts.astype(np.longdouble)
+    m, end = precise(manifold)
     action = lh.Action(p.field.representation)
     psi = Generator(p.field, spaces.make(manifold).dimension, m)
     h = np.full((len(m), 1), np.longdouble(p.t) / count)
     for i in range(count):
+        if by_exponentials:
+            step = step.with_prepared(_landing=Landing(None, None, None))
         local = step.at(action, psi, m, i * h)
         if change is not None:
             change(local)
         m = local.point(h)
     scale = np.sqrt(np.mean(np.sum(p.starts**2, axis=-1)))
-    return float(np.sqrt(np.mean(np.sum((m - p.end) ** 2, axis=-1))) / scale)
+    return float(np.sqrt(np.mean(np.sum((m - end) ** 2, axis=-1))) / scale)
 
 
 def slope(manifold: str, n: int, **options: Any) -> float:
@@ -46,6 +69,12 @@ def slope(manifold: str, n: int, **options: Any) -> float:
 @pytest.mark.parametrize("manifold", MANIFOLDS)
 def test_observed_order(manifold: str, n: int) -> None:
     assert abs(slope(manifold, n) - n) < WINDOW[n]
+
+
+@pytest.mark.parametrize("n", [4, 9, 12])
+@pytest.mark.parametrize("manifold", BY_INVARIANTS)
+def test_observed_order_by_exponentials(manifold: str, n: int) -> None:
+    assert abs(slope(manifold, n, by_exponentials=True) - n) < WINDOW[n]
 
 
 def without_last(local: TaylorSeries) -> None:
@@ -62,9 +91,9 @@ def test_without_the_last_coefficient_the_order_is_one_lower(manifold: str, n: i
 
 
 @pytest.mark.parametrize(("q", "iterations"), [(5, 0), (3, 0), (3, 1), (3, 2)])
-@pytest.mark.parametrize("manifold", BY_EXPONENTIALS)
+@pytest.mark.parametrize("manifold", BY_INVARIANTS)
 def test_the_corrections_limit_the_order(manifold: str, q: int, iterations: int) -> None:
-    """Theorem 2 of theory/taylor: the error of a step after j corrections is O(h^(q (j + 1))).
+    """Theorem 3 of theory/taylor: the error of a step after j corrections is O(h^(q (j + 1))).
 
     For q = 3 the commutator is left out of xi.
     """
@@ -76,7 +105,9 @@ def test_the_corrections_limit_the_order(manifold: str, q: int, iterations: int)
             psi = list(local._velocity)
             local.generator = lambda h: sum(x * h ** (k + 1) / (k + 1) for k, x in enumerate(psi))
 
-    errors, whole = ([run(manifold, lh.Taylor(12), k, change=by) for k in (12, 24)] for by in (changed, None))
+    errors, whole = (
+        [run(manifold, lh.Taylor(12), k, change=by, by_exponentials=True) for k in (12, 24)] for by in (changed, None)
+    )
     limit = q * (iterations + 1) - 1
     assert abs(np.log2(errors[0] / errors[1]) - limit) < 1.1, errors
     # near the steps at which the lower order costs nothing yet, the whole step shows its order, else its accuracy
@@ -126,6 +157,63 @@ def test_points_stay_on_the_orbit_over_a_long_run(manifold: str, bound: float) -
     sol = lh.integrate(p.field, (0, 300), p.starts, step=lh.Taylor(8), dt=0.25, t_eval=np.linspace(0, 300, 7))
     result = invariants(manifold, np.moveaxis(sol.y, -1, 0))
     assert sol.success and np.abs(result - result[0]).max() < bound
+
+
+def by_maps(manifold: str, h: float) -> tuple[InvariantSeries, Any]:
+    """A step that is landed by an equivariant map, and its sizes."""
+    p = problem(manifold)
+    action, psi = lh.Action(p.field.representation), Generator(p.field, spaces.make(manifold).dimension, p.starts)
+    local = lh.Taylor(4).at(action, psi, p.starts, np.zeros((len(p.starts), 1)))
+    assert isinstance(local, InvariantSeries)
+    return local, np.full((len(p.starts), 1), h)
+
+
+@pytest.mark.parametrize("manifold", BY_INVARIANTS)
+def test_long_steps_are_landed_by_exponentials(manifold: str) -> None:
+    """A series that is far from the orbit is landed as if there were no map, and the others of the ensemble by it."""
+    local, h = by_maps(manifold, 0.25)
+    long = h.copy()
+    long[::2] *= 60
+    result, far = local.point(long), local._far.point(long)
+    assert (result[::2] == far[::2]).all()
+    assert (result[1::2] == local.point(h)[1::2]).all()
+    assert (np.abs(result - far)[1::2].max(axis=-1) > 0).all()
+    assert np.abs(result - far)[1::2].max() < 1e-3
+    for points in (result, local.point(h)):
+        assert (check_point(local.action.representation, points) == spaces.make(manifold).dimension).all()
+        assert np.abs(local._landing.improved(points, local._numbers) - points).max() < 1e-13 * np.abs(points).max()
+
+
+@pytest.mark.parametrize("manifold", BY_INVARIANTS)
+def test_compiled_steps_that_are_too_long_are_those_of_numpy(manifold: str) -> None:
+    pytest.importorskip("llvmlite")
+    p = problem(manifold)
+    ends = [
+        lh.integrate(p.field, (0, 12), p.starts, step=lh.Taylor(4), dt=3.0, engine=engine).y
+        for engine in ("numpy", "llvm")
+    ]
+    assert np.isfinite(ends[0]).all()
+    assert np.abs(ends[0] - ends[1]).max() < 1e-9 * np.abs(ends[0]).max()
+
+
+@pytest.mark.parametrize("options", [{"dt": 0.1}, {"rtol": 1e-8}])
+def test_a_second_call_on_an_orbit_of_smaller_dimension_is_made_by_its_plan(options: dict[str, Any]) -> None:
+    """Points of another orbit of that dimension, and of one of larger dimension, are looked at closely."""
+    pytest.importorskip("llvmlite")
+    p = problem("CP^2")
+    propagator = lh.Propagator(p.field, step=lh.Taylor(8), engine="llvm")
+    with patch.object(LlvmEngine, "solve", autospec=True, side_effect=LlvmEngine.solve) as solve:
+        for factor, calls in ((1.0, 1), (2.0, 1), (-1.0, 2)):
+            start = factor * p.starts[1]
+            end = propagator((0, 2), start, t_eval=[2.0], **options).y
+            assert solve.call_count == calls
+            exact = lh.integrate(p.field, (0, 2), start, step=lh.LieTaylor(12), dt=0.02, t_eval=[2.0]).y
+            assert np.abs(end - exact).max() < 1e-6
+        start = problem("SU(3)/T").starts[0]
+        end = propagator((0, 2), start, t_eval=[2.0], **options).y
+        exact = lh.integrate(p.field, (0, 2), start, step=lh.LieTaylor(12), dt=0.02, t_eval=[2.0]).y
+        assert solve.call_count == 3
+        assert np.abs(end - exact).max() < 1e-6
 
 
 def test_without_the_landing_points_leave_the_orbit() -> None:
