@@ -10,8 +10,10 @@ from liehom.base.typing import VectorLike
 from liehom.exact.algebra.core.lie_algebra import LieAlgebra
 from liehom.exact.algebra.core.subalgebra import Subalgebra
 from liehom.exact.scalars.field import Field, Matrix, MatrixLike
+from liehom.exact.scalars.subspaces import Subspace
 
 if TYPE_CHECKING:
+    from liehom.exact.geometry.metrics import InvariantMetric, InvariantMetrics
     from liehom.exact.representations.core.representation import Representation
 
 
@@ -118,6 +120,68 @@ class Pair(Displayed, Immutable):
         from liehom.exact.representations.analysis.decomposition import is_primitive
 
         return is_primitive(self)
+
+    # -- invariant geometry, see docs/theory/geometry.md ---------------------------------------------------
+    def reductive_complement(self) -> Subspace:
+        """An ad(h)-invariant complement of h in g: orthogonal for the Killing form, if that is not degenerate on h.
+
+        Raises
+        ------
+        NotReductiveError
+            If there is none; its `proof` combines the linear equations for one to 0 = 1.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> lh.pair("so(3)/so(2)").reductive_complement().dimension, lh.pair("sl(2)/B").is_reductive()
+        (2, False)
+        """
+        from liehom.exact.geometry.reductive import reductive_complement
+
+        return reductive_complement(self)
+
+    def is_reductive(self) -> bool:
+        """Whether h has an ad(h)-invariant complement in g."""
+        from liehom.exact.geometry.reductive import is_reductive
+
+        return is_reductive(self)
+
+    def is_symmetric(self) -> bool:
+        """Whether h is the fixed algebra of an involution of g: [m, m] in h for an invariant complement m.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> [lh.pair(name).is_symmetric() for name in ("so(5)/so(4)", "g2/su(3)")]
+        [True, False]
+        """
+        from liehom.exact.geometry.reductive import is_symmetric
+
+        return is_symmetric(self)
+
+    def invariant_metrics(self) -> InvariantMetrics:
+        """The invariant metrics of G/H, with their curvature: ``metrics([1, 2, 3])`` is one of them.
+
+        Raises
+        ------
+        NotReductiveError
+            If h has no invariant complement.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> lh.pair("g2/su(3)").invariant_metrics()([1]).einstein_constant()
+        5/12
+        """
+        from liehom.exact.geometry.metrics import InvariantMetrics
+
+        return InvariantMetrics(self)
+
+    def is_naturally_reductive(self, metric: InvariantMetric) -> bool:
+        """Whether <[X, Y]_m, Z> + <Y, [X, Z]_m> = 0 for an invariant complement m of this g and h."""
+        from liehom.exact.geometry.metrics import is_naturally_reductive
+
+        return is_naturally_reductive(self, metric)
 
     def coordinates(self, x: VectorLike) -> Matrix:
         """The coordinates of x mod h, a row matrix (1, d), in the complement of ``subalgebra.quotient()``."""
