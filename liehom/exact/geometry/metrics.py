@@ -230,7 +230,9 @@ class InvariantMetric(Displayed):
         dual, ring = self.metrics._dual, self.metrics.split.field
         if len(dual) < self.metrics.dimension:
             raise SingularError("every invariant form is degenerate, so G/H has no invariant metric")
-        point = sum((f.scale(3 * a + 1) for a, f in enumerate(self.metrics.basis)), ring.zeros(d, d))
+        numbers = [QQ.convert(3 * a * a + a + 1) for a in range(len(self.field.variables))]
+        values = [p.numerator(*numbers) for p in self.parameters]  # the parameters are polynomials
+        point = sum((f.scale(x) for x, f in zip(values, self.metrics.basis, strict=True)), ring.zeros(d, d))
         columns = ring.stack_rows([(point @ f).reshape(1, d * d) for f in dual], d * d)
         places = columns.echelon()[1]
         table = [(self._matrix @ np.asarray(f)).reshape(-1)[places] for f in dual]
