@@ -25,6 +25,7 @@ from liehom.exact.geometry.reductive import ObjectArray, ReductiveSplit, has_sol
 from liehom.exact.representations.core.pair import Pair
 from liehom.exact.representations.invariants.intertwiners import MatrixAlgebra, invariant_forms
 from liehom.exact.scalars.exact_field import ExactField, ExactMatrix
+from liehom.exact.scalars.field import Matrix
 from liehom.exact.scalars.function_field import FunctionField, RationalFunction
 from liehom.exact.scalars.polynomial import Polynomial
 from liehom.exact.scalars.rational import QQ
@@ -267,17 +268,7 @@ class InvariantMetric(Displayed):
 
     @cached_property
     def _curvature(self) -> ObjectArray:
-        split = self.metrics.split
-        d, operators = split.dimension, [a.T for a in self._connection]
-        acting = [np.asarray(a) for a in split.isotropy]
-        table = np.full((d, d, d, d), 0, dtype=object)
-        for i, j in combinations(range(d), 2):
-            value = operators[i] @ operators[j] - operators[j] @ operators[i]
-            for row, matrices in ((split.horizontal[i].row(j), operators), (split.vertical[i].row(j), acting)):
-                for c, matrix in zip(row, matrices, strict=True):
-                    value = value - matrix * c if c != 0 else value
-            table[i, j], table[j, i] = _simplified(value.T), _simplified(-value.T)
-        return table
+        return curvature_of(self.metrics.split, self._connection)
 
     def curvature(self) -> ObjectArray:
         """The curvature tensor: entry (i, j, k, l) is the part of R(m_i, m_j) m_k on m_l."""
@@ -368,6 +359,23 @@ class InvariantMetric(Displayed):
         rows = [[a[i, j] for i, j in combinations(range(d), 2)] for a in lowered]
         return whole.subalgebra(field.matrix(rows, (len(rows), whole.dimension)))
 
+    def kaehler_form(self) -> Matrix | None:
+        """A parallel invariant 2-form that is not degenerate, a skew matrix (d, d), or None if there is none.
+
+        If there is one, the metric is a Kaehler metric for an invariant complex structure.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> su3 = lh.su(3)
+        >>> metrics = lh.Pair(su3, su3.cartan_subalgebra()).invariant_metrics()
+        >>> [metrics(x).kaehler_form() is None for x in ([1, 1, 1], [1, 1, 2], [1, 2, 3])]
+        [True, False, False]
+        """
+        from liehom.exact.geometry.forms import kaehler_form
+
+        return kaehler_form(self)
+
     def is_naturally_reductive(self) -> bool:
         """Whether <[X, Y]_m, Z> + <Y, [X, Z]_m> = 0 for some invariant complement m, so with respect to this G."""
         field, split = self._numbers("natural reductivity"), self.metrics.split
@@ -381,6 +389,20 @@ class InvariantMetric(Displayed):
 
     def __repr__(self) -> str:
         return f"<invariant metric {self.parameters} of {self.metrics.pair!r}>"
+
+
+def curvature_of(split: ReductiveSplit, nomizu: ObjectArray) -> ObjectArray:
+    """The curvature tensor (d, d, d, d) of the connection with a Nomizu map (d, d, d): see the head of this file."""
+    d, operators = split.dimension, [a.T for a in nomizu]
+    acting = [np.asarray(a) for a in split.isotropy]
+    table = np.full((d, d, d, d), QQ.zero, dtype=object)
+    for i, j in combinations(range(d), 2):
+        value = operators[i] @ operators[j] - operators[j] @ operators[i]
+        for row, matrices in ((split.horizontal[i].row(j), operators), (split.vertical[i].row(j), acting)):
+            for c, matrix in zip(row, matrices, strict=True):
+                value = value - matrix * c if c != 0 else value
+        table[i, j], table[j, i] = _simplified(value.T), _simplified(-value.T)
+    return table
 
 
 def _solved(table: ObjectArray, right: ObjectArray) -> list[Any]:

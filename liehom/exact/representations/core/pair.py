@@ -13,6 +13,11 @@ from liehom.exact.scalars.field import Field, Matrix, MatrixLike
 from liehom.exact.scalars.subspaces import Subspace
 
 if TYPE_CHECKING:
+    from liehom.exact.geometry.forms import (
+        InvariantConnections,
+        InvariantDifferentialForms,
+        InvariantSymplecticForms,
+    )
     from liehom.exact.geometry.metrics import InvariantMetric, InvariantMetrics
     from liehom.exact.representations.core.representation import Representation
 
@@ -182,6 +187,67 @@ class Pair(Displayed, Immutable):
         from liehom.exact.geometry.metrics import is_naturally_reductive
 
         return is_naturally_reductive(self, metric)
+
+    def invariant_forms(self, degree: int) -> InvariantDifferentialForms:
+        """The invariant differential forms of G/H of a degree.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> [lh.pair("g2/su(3)").invariant_forms(k).dimension for k in range(7)]
+        [1, 0, 1, 2, 1, 0, 1]
+        """
+        from liehom.exact.geometry.forms import invariant_differential_forms
+
+        return invariant_differential_forms(self, degree)
+
+    def invariant_cohomology(self) -> tuple[int, ...]:
+        """Dimensions of the relative cohomology H^k(g, h), k = 0, ..., d: Betti numbers of G/H if G is compact.
+
+        H is connected here; a larger group with this Lie algebra may have fewer invariant forms.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> lh.pair("su(3)/u(2)").invariant_cohomology(), lh.pair("so(4)/so(3)").invariant_cohomology()
+        ((1, 0, 1, 0, 1), (1, 0, 0, 1))
+        """
+        from liehom.exact.geometry.forms import invariant_cohomology
+
+        return invariant_cohomology(self)
+
+    def invariant_symplectic_forms(self) -> InvariantSymplecticForms:
+        """The closed invariant 2-forms of G/H, and whether one of them is symplectic."""
+        from liehom.exact.geometry.forms import InvariantSymplecticForms
+
+        return InvariantSymplecticForms(self)
+
+    def invariant_complex_structures(self) -> tuple[Matrix, ...]:
+        """All invariant complex structures J of G/H, matrices (d, d) on columns of V.
+
+        Raises
+        ------
+        UndecidedError
+            If isotropy summands are equivalent, so that the J with J^2 = -1 form families.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> su3 = lh.su(3)
+        >>> len(lh.Pair(su3, su3.cartan_subalgebra()).invariant_complex_structures())
+        6
+        >>> lh.pair("g2/su(3)").invariant_complex_structures()
+        ()
+        """
+        from liehom.exact.geometry.forms import invariant_complex_structures
+
+        return invariant_complex_structures(self)
+
+    def invariant_connections(self) -> InvariantConnections:
+        """The invariant affine connections of G/H, by Nomizu maps V x V -> V, with torsion and curvature."""
+        from liehom.exact.geometry.forms import InvariantConnections
+
+        return InvariantConnections(self)
 
     def coordinates(self, x: VectorLike) -> Matrix:
         """The coordinates of x mod h, a row matrix (1, d), in the complement of ``subalgebra.quotient()``."""
