@@ -15,7 +15,7 @@ from typing import Any, final
 
 import numpy as np
 
-from liehom.base.errors import InputError, LimitError, UndecidedError
+from liehom.base.errors import InputError, UndecidedError
 from liehom.base.objects import Displayed
 from liehom.exact.geometry.metrics import InvariantMetric, InvariantMetrics
 from liehom.exact.scalars.exact_field import ExactField, ExactMatrix, as_exact
@@ -26,7 +26,7 @@ from liehom.exact.scalars.polynomial_systems import UnfinishedError, real_soluti
 from liehom.exact.scalars.rational import QQ
 from liehom.exact.scalars.roots import real_ball
 
-MAX_PARAMETERS = 8
+MAX_PARAMETERS = 6
 Key = tuple[tuple[str, ...], int]
 """An algebraic number: its minimal polynomial, and the number of the root from the left."""
 
@@ -112,16 +112,24 @@ def einstein_metrics(metrics: InvariantMetrics) -> EinsteinMetrics:
             f"the pair is over {metrics.split.field.name}, and Einstein metrics of pairs with several invariant metrics "
             "are found over QQ; give the pair in a basis with rational structure constants"
         )
-    known = [metrics.coordinates(np.asarray(metrics.reference))]
     try:
-        forms = _slice(metrics)
-        if len(forms) > MAX_PARAMETERS:
-            raise UnfinishedError(f"{len(forms)} parameters are more than {MAX_PARAMETERS}")
-        found = [*_solutions(metrics, forms)]
-    except (UnfinishedError, LimitError) as stop:
-        some = [metrics(x) for x in known]
-        return _numbered([m for m in some if m.einstein_constant() is not None], False, str(stop))
+        found = [*_solutions(metrics, _slice(metrics))]
+    except UnfinishedError as stop:
+        return _numbered(_symmetric_solutions(metrics), False, str(stop))
     return _numbered(found, True, "a Groebner basis has finitely many solutions, and these are the definite real ones")
+
+
+def _symmetric_solutions(metrics: InvariantMetrics) -> list[InvariantMetric]:
+    """The Einstein metrics that the identity component of N(H)/H preserves, else only the reference metric."""
+    r, field = metrics.dimension, metrics.split.field
+    fixed = field.stack_rows(gauge_operators(metrics), r).null_space()
+    if 0 < fixed.nrows < r:
+        try:
+            return [*_solutions(metrics, _adapted_forms(metrics, fixed))]
+        except UnfinishedError:
+            pass
+    metric = metrics(metrics.coordinates(np.asarray(metrics.reference)))
+    return [metric] if metric.einstein_constant() is not None else []
 
 
 def _without_reference(metrics: InvariantMetrics) -> EinsteinMetrics:
@@ -132,6 +140,8 @@ def _without_reference(metrics: InvariantMetrics) -> EinsteinMetrics:
 
 def _solutions(metrics: InvariantMetrics, forms: Sequence[ExactMatrix]) -> Iterator[InvariantMetric]:
     """The definite Einstein metrics that are combinations of some forms, the first with coefficient 1."""
+    if len(forms) > MAX_PARAMETERS:
+        raise UnfinishedError(f"{len(forms)} parameters are more than {MAX_PARAMETERS}")
     names = FunctionField([f"x{a + 1}" for a in range(1, len(forms))])
     values = (names.one, *names.variables)
     columns = [metrics.coordinates(np.asarray(f)) for f in forms]
@@ -206,8 +216,14 @@ def _slice(metrics: InvariantMetrics) -> list[ExactMatrix]:
         rows = field.stack_rows([(gram @ x @ column).T for x in operators], r)
         slices.append(rows.null_space())
     best = min(slices, key=lambda s: s.nrows)
-    flat = field.stack_rows([f.reshape(1, d * d) for f in metrics.basis], d * d)
-    return list((best @ flat).row_space().split_rows(d, d))
+    return _adapted_forms(metrics, best)
+
+
+def _adapted_forms(metrics: InvariantMetrics, rows: ExactMatrix) -> list[ExactMatrix]:
+    """The forms with given parameters, in an echelon basis: the first alone has its first diagonal entry, which is 1."""
+    d = metrics.split.dimension
+    flat = metrics.split.field.stack_rows([f.reshape(1, d * d) for f in metrics.basis], d * d)
+    return list((rows @ flat).row_space().split_rows(d, d))
 
 
 # Kinds: metrics up to scale, by invariants that are compared exactly.

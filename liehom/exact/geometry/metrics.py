@@ -155,7 +155,7 @@ class InvariantMetrics(Displayed):
     def form(self, parameters: Sequence[Any], *, dual: bool = False) -> ObjectArray:
         """The array (d, d) of the form with these parameters, in the basis of forms on V or on its dual."""
         d = self.split.dimension
-        total = np.full((d, d), 0, dtype=object)
+        total = np.full((d, d), parameters[0] * 0 if len(parameters) else 0, dtype=object)
         for x, f in zip(parameters, self._dual if dual else self.basis, strict=True):
             for i, j in np.argwhere(np.asarray(f) != 0).tolist():
                 total[i, j] = total[i, j] + x * f[i, j]

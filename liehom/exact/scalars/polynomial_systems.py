@@ -12,7 +12,7 @@ import random
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import reduce
-from itertools import product
+from itertools import count, product
 from math import lcm
 from typing import final
 
@@ -26,8 +26,10 @@ from liehom.exact.scalars.field import Scalar
 from liehom.exact.scalars.polynomial import Polynomial, horner
 from liehom.exact.scalars.rational import QQ
 
-GROWTH = ((60, 300, 5_000), (200, 1500, 20_000), (400, 4000, 60_000))
-"""Limits of Buchberger's algorithm, one after another: members of the basis, terms and bits of each."""
+# Limits of Buchberger's algorithm: steps, members of the basis, bits of a coefficient.
+MAX_STEPS = 2000
+MAX_MEMBERS = 150
+MAX_BITS = 20_000
 MAX_SOLUTIONS = 200
 PRECISION = 128
 
@@ -112,16 +114,51 @@ def _branches(
     yield equations, excluded
 
 
+def _lead(p: flint.fmpz_mpoly) -> Exponents:
+    return tuple(map(int, p.monoms()[0]))
+
+
+def _divides(a: Exponents, b: Exponents) -> bool:
+    return all(x <= y for x, y in zip(a, b, strict=True))
+
+
 def _groebner(equations: list[flint.fmpz_mpoly]) -> list[flint.fmpz_mpoly]:
-    """The reduced Groebner basis for the degree reverse lexicographic order."""
+    """The reduced Groebner basis, with tails reduced at each step, without which coefficients grow fast."""
     ring = equations[0].context()
-    basis = flint.fmpz_mpoly_vec(equations, ring)
-    for limits in GROWTH:
+    basis: dict[Exponents, flint.fmpz_mpoly] = {}
+    queue = list(equations)
+    pairs: list[tuple[int, Exponents, Exponents]] = []
+    for steps in count():
         in_time()
-        basis, done = basis.buchberger_naive(limits=limits)
-        if done:
-            return list(basis.autoreduction())
-    raise UnfinishedError("a Groebner basis exceeds the limits")
+        if queue:
+            queue.sort(key=lambda p: (int(p.total_degree()), len(p)), reverse=True)
+            p = queue.pop()
+        elif pairs:
+            pairs.sort(reverse=True)
+            _, a, b = pairs.pop()
+            p = basis[a].spoly(basis[b])
+        else:
+            return list(basis.values())
+        rest = p.reduction_primitive_part(flint.fmpz_mpoly_vec(list(basis.values()), ring)) if basis else p
+        if rest.is_zero():
+            continue
+        lead = _lead(rest)
+        queue += [basis.pop(a) for a in list(basis) if _divides(lead, a)]
+        pairs = [(d, a, b) for d, a, b in pairs if a in basis and b in basis]
+        for a in basis:  # coprime leading monomials: the pair reduces to zero (Buchberger)
+            if any(x and y for x, y in zip(a, lead, strict=True)):
+                pairs.append((sum(map(max, a, lead)), a, lead))
+        reduced = flint.fmpz_mpoly_vec([*basis.values(), rest], ring).autoreduction()
+        basis = {_lead(g): g for g in reduced}
+        bits = max(_height(g) for g in basis.values())
+        if steps > MAX_STEPS or len(basis) > MAX_MEMBERS or bits > MAX_BITS:
+            raise UnfinishedError("a Groebner basis exceeds the limits")
+    raise InternalError("a loop without end has ended")
+
+
+def _height(p: flint.fmpz_mpoly) -> int:
+    """Bits of the largest coefficient."""
+    return max(int(c).bit_length() for c in p.coeffs())
 
 
 def _solve(
@@ -152,19 +189,19 @@ def _integer_value(p: Polynomial, x: flint.fmpz_mpoly) -> flint.fmpz_mpoly:
 
 
 def _points(
-    algebra: _Algebra, count: int, possible: Callable[[Sequence[flint.arb]], bool]
+    algebra: _Algebra, size: int, possible: Callable[[Sequence[flint.arb]], bool]
 ) -> Iterator[RealSolution]:
     """The real solutions of a reduced algebra, by a linear form that separates them."""
-    rng, size = random.Random(5), len(algebra.monomials)
+    rng, degree = random.Random(5), len(algebra.monomials)
     for attempt in range(20):
-        weights = [rng.randint(-1 - attempt, 2 + attempt) for _ in range(count)]
+        weights = [rng.randint(-1 - attempt, 2 + attempt) for _ in range(size)]
         coefficients, powers = algebra.minimal_polynomial(weights)
-        if len(coefficients) == size + 1:
+        if len(coefficients) == degree + 1:
             break
     else:
         raise InternalError("no linear form separates the solutions of polynomial equations")
-    columns = [[algebra.vector(algebra.unit(i)).get(m, 0) for m in algebra.monomials] for i in range(1, count)]
-    table = flint.fmpq_mat(size, size, [p.get(m, 0) for p in powers for m in algebra.monomials]).transpose()
+    columns = [[algebra.vector(algebra.unit(i)).get(m, 0) for m in algebra.monomials] for i in range(1, size)]
+    table = flint.fmpq_mat(degree, degree, [p.get(m, 0) for p in powers for m in algebra.monomials]).transpose()
     solved = table.solve(flint.fmpq_mat(columns).transpose()).transpose().tolist() if columns else []
     for factor, _ in Polynomial(QQ, coefficients).factor():
         reduced = [Polynomial(QQ, p) % factor for p in solved]
