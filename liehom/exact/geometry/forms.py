@@ -248,7 +248,7 @@ def invariant_complex_structures(pair: Pair) -> tuple[Matrix, ...]:
     """Implements `Pair.invariant_complex_structures`."""
     split = reductive_split(pair)
     structures = almost_complex_structures(split)
-    return tuple(j for j in structures if not _nijenhuis(split, np.asarray(j)).any())
+    return tuple(j for j in structures if (_nijenhuis(split, np.asarray(j)) == 0).all())
 
 
 def almost_complex_structures(split: ReductiveSplit) -> list[ExactMatrix]:
