@@ -1,9 +1,9 @@
 """Invariant Einstein metrics: Ric = c g as polynomial equations for the parameters, solved exactly.
 
-One diagonal entry of the metric is normalized to 1. The group N(H)/H acts on the metrics. If G is compact, each orbit of
-its identity component K meets the slice of the forms w with <w, X w0> = 0 for all X in its Lie algebra, in the points of
-the orbit nearest to w0, so the metrics on a slice suffice. Groebner bases give all solutions, and signatures the
-definite ones. Each metric is verified again by the trace of its curvature tensor.
+One diagonal entry of the metric is normalized to 1. The group N(H)/H acts on the metrics. If G is compact, each orbit
+of its identity component K meets the slice of the forms w with <w, X w0> = 0 for all X in its Lie algebra, in the
+points of the orbit nearest to w0, so the metrics on a slice suffice. Groebner bases give all solutions, and
+signatures the definite ones. Each metric is verified again by the trace of its curvature tensor.
 """
 
 from __future__ import annotations
@@ -16,13 +16,12 @@ from typing import Any, final
 import numpy as np
 
 from liehom.base.errors import InputError, UndecidedError
-from liehom.base.objects import Displayed
 from liehom.exact.geometry.metrics import InvariantMetric, InvariantMetrics
+from liehom.exact.geometry.polynomial_systems import UnfinishedError, real_solutions
 from liehom.exact.scalars.exact_field import ExactField, ExactMatrix, as_exact
 from liehom.exact.scalars.field import Scalar
 from liehom.exact.scalars.function_field import FunctionField, RationalFunction
 from liehom.exact.scalars.polynomial import Polynomial, horner
-from liehom.exact.scalars.polynomial_systems import UnfinishedError, real_solutions
 from liehom.exact.scalars.rational import QQ
 from liehom.exact.scalars.roots import real_ball
 
@@ -63,7 +62,7 @@ class EinsteinMetric:
 
 
 @final
-class EinsteinMetrics(Displayed):
+class EinsteinMetrics:
     """Invariant Einstein metrics of G/H up to scale, a sequence of `EinsteinMetric`; see `InvariantMetrics.einstein`.
 
     Attributes
@@ -109,8 +108,8 @@ def einstein_metrics(metrics: InvariantMetrics) -> EinsteinMetrics:
         return _numbered([metric] if metric.einstein_constant() is not None else [], True, "there is one metric")
     if metrics.split.field.degree > 1:
         raise UndecidedError(
-            f"the pair is over {metrics.split.field.name}, and Einstein metrics of pairs with several invariant metrics "
-            "are found over QQ; give the pair in a basis with rational structure constants"
+            f"the pair is over {metrics.split.field.name}, and Einstein metrics of pairs with several parameters are "
+            "found over QQ; give the pair in a basis with rational structure constants"
         )
     try:
         found = [*_solutions(metrics, _slice(metrics))]
@@ -220,7 +219,7 @@ def _slice(metrics: InvariantMetrics) -> list[ExactMatrix]:
 
 
 def _adapted_forms(metrics: InvariantMetrics, rows: ExactMatrix) -> list[ExactMatrix]:
-    """The forms with given parameters, in an echelon basis: the first alone has its first diagonal entry, which is 1."""
+    """The forms with given parameters, in an echelon basis: only the first has its first entry, which is 1."""
     d = metrics.split.dimension
     flat = metrics.split.field.stack_rows([f.reshape(1, d * d) for f in metrics.basis], d * d)
     return list((rows @ flat).row_space().split_rows(d, d))
@@ -238,13 +237,11 @@ def _numbered(found: Sequence[InvariantMetric], complete: bool, reason: str) -> 
         for m, c, v in zip(found, constants, volumes, strict=True)
     ]
     order = list(dict.fromkeys(keys))
-    members = [
-        EinsteinMetric(m, c, order.index(key)) for m, c, key in zip(found, constants, keys, strict=True)
-    ]
+    members = [EinsteinMetric(m, c, order.index(key)) for m, c, key in zip(found, constants, keys, strict=True)]
     return EinsteinMetrics(sorted(members, key=lambda m: m.kind), complete, reason)
 
 
-def _volume(metric: InvariantMetric, constant: Any) -> Any:
+def _volume(metric: InvariantMetric, constant: Scalar) -> Scalar:
     """c^d times the determinant of g in terms of the reference form."""
     field: Any = metric.field
     d = len(metric.matrix())
@@ -253,7 +250,7 @@ def _volume(metric: InvariantMetric, constant: Any) -> Any:
     return constant**d * table / (reference.determinant() if reference is not None else 1)
 
 
-def _norm(metric: InvariantMetric, constant: Any) -> Any:
+def _norm(metric: InvariantMetric, constant: Scalar) -> Scalar:
     """|R|^2 / c^2, or |R|^2 if c = 0; the curvature tensor is raised twice and lowered twice."""
     curvature, lower, upper = metric.curvature(), metric.matrix(), metric._raised
     other = np.tensordot(upper, np.tensordot(upper, curvature, (1, 1)), (1, 1))  # indices j, i, k, l
@@ -262,7 +259,7 @@ def _norm(metric: InvariantMetric, constant: Any) -> Any:
     return total / constant**2 if constant != 0 else total
 
 
-def _key(field: Any, value: Scalar) -> Key:
+def _key(field: ExactField | FunctionField, value: Scalar) -> Key:
     """The minimal polynomial of an algebraic number over QQ, and the index of the root that it is."""
     if not isinstance(field, ExactField):
         raise InputError("a metric with parameters has no kind")

@@ -17,7 +17,6 @@ import numpy as np
 
 from liehom.base.budget import in_time, within
 from liehom.base.errors import InputError, InternalError, ShapeError, UndecidedError, displayed
-from liehom.base.objects import Displayed
 from liehom.base.typing import ScalarLike
 from liehom.exact.geometry.metrics import InvariantMetric, curvature_of
 from liehom.exact.geometry.reductive import ObjectArray, ReductiveSplit, reductive_split
@@ -35,7 +34,7 @@ Form: TypeAlias = dict[tuple[int, ...], Any]
 
 
 @final
-class InvariantDifferentialForms(Displayed):
+class InvariantDifferentialForms:
     """The invariant k-forms of G/H, the result of `Pair.invariant_forms`.
 
     Attributes
@@ -170,7 +169,7 @@ def invariant_cohomology(pair: Pair) -> tuple[int, ...]:
 
 
 @final
-class InvariantSymplecticForms(Displayed):
+class InvariantSymplecticForms:
     """The closed invariant 2-forms of G/H; the non-degenerate ones among them are the symplectic forms.
 
     Attributes
@@ -225,7 +224,7 @@ def non_singular_member(matrices: Sequence[ExactMatrix]) -> ExactMatrix | None:
         total = sum((m.scale(rng.randint(1, 1000)) for m in matrices), field.zeros(d, d))
         if total.rank() == d:
             return total
-    if d % 2 and all(m.T == -m for m in matrices):
+    if d % 2 and all(-m == m.T for m in matrices):
         return None
     if len(matrices) == 1 or field.stack_rows(list(matrices), d).rank() < d:
         return None
@@ -257,7 +256,7 @@ def almost_complex_structures(split: ReductiveSplit) -> list[ExactMatrix]:
     maps = commutant(split.isotropy, d, field)
     if any(a @ b != b @ a for a, b in combinations(maps, 2)):
         raise UndecidedError(
-            f"{displayed(split.pair)} has equivalent isotropy summands, so its invariant almost complex structures form "
+            f"{displayed(split.pair)} has equivalent isotropy summands, so its almost complex structures form "
             "families, which are not searched for complex structures"
         )
     if d % 2:
@@ -328,14 +327,14 @@ def kaehler_form(metric: InvariantMetric) -> Matrix | None:
 
 
 @final
-class InvariantConnections(Displayed):
+class InvariantConnections:
     """The invariant affine connections of G/H, the result of `Pair.invariant_connections`.
 
     Attributes
     ----------
     pair : Pair
     basis : tuple of arrays
-        A basis of Hom_h(V x V, V), arrays (d, d, d): entry (i, j, l) is the part of Lambda(m_i) m_j on m_l. The zero map
+        A basis of Hom_h(V x V, V), arrays (d, d, d): entry (i, j, l) is the part of Lambda(m_i) m_j on m_l. Zero
         is the canonical connection of the complement m.
 
     Examples

@@ -16,12 +16,11 @@ from typing import TYPE_CHECKING, Any, final
 import numpy as np
 
 from liehom.base.errors import FieldError, InputError, ShapeError, SingularError, displayed
-from liehom.base.objects import Displayed
 from liehom.base.typing import ScalarLike, VectorLike
 from liehom.exact.algebra.core.lie_algebra import LieAlgebra
 from liehom.exact.algebra.core.subalgebra import Subalgebra
 from liehom.exact.algebra.core.tables import field_of_values
-from liehom.exact.geometry.reductive import ObjectArray, ReductiveSplit, has_solution, reductive_split
+from liehom.exact.geometry.reductive import ObjectArray, ReductiveSplit, Value, has_solution, reductive_split
 from liehom.exact.representations.core.pair import Pair
 from liehom.exact.representations.invariants.intertwiners import MatrixAlgebra, invariant_forms
 from liehom.exact.scalars.exact_field import ExactField, ExactMatrix
@@ -37,15 +36,15 @@ MAX_FUNCTION_PARAMETERS = 12
 
 
 @final
-class InvariantMetrics(Displayed):
+class InvariantMetrics:
     """The invariant metrics of G/H of all signatures, the result of `Pair.invariant_metrics`.
 
     Attributes
     ----------
     pair : Pair
     basis : tuple of Matrix
-        Invariant symmetric forms F_a on V, shape (d, d), in the coordinates of ``pair.reductive_complement().basis``. If
-        the isotropy summands are inequivalent, there is one for each: there F_a is the reference form, elsewhere 0.
+        Invariant symmetric forms F_a on V, shape (d, d), in the basis of ``pair.reductive_complement()``. If the
+        isotropy summands are inequivalent, there is one for each: there F_a is the reference form, elsewhere 0.
     reference : Matrix or None
         A positive definite invariant form: minus the Killing form, divided by a rational number, if that is definite.
         None if no definite form was found.
@@ -116,7 +115,9 @@ class InvariantMetrics(Displayed):
         if len(values) != self.dimension:
             raise ShapeError(f"{len(values)} parameters were given, expected {self.dimension}")
         field: Any = self.split.field
-        if field.degree == 1 and not any(isinstance(x, int) for x in values) or any(isinstance(x, str) for x in values):
+        if (field.degree == 1 and not any(isinstance(x, int) for x in values)) or any(
+            isinstance(x, str) for x in values
+        ):
             field = field_of_values(values) if field.degree == 1 else field
         elif field.degree == 1:
             field = field_of_values([x for x in values if not isinstance(x, int)])
@@ -140,12 +141,16 @@ class InvariantMetrics(Displayed):
         (2)/((x1))
         """
         if self.split.field.degree > 1:
-            raise FieldError(f"rational functions are over QQ, and the pair is over {self.split.field.name}; give numbers")
+            raise FieldError(
+                f"rational functions are over QQ, and the pair is over {self.split.field.name}; give numbers"
+            )
         if self.dimension > MAX_FUNCTION_PARAMETERS:
             raise InputError(f"{self.dimension} parameters are more than {MAX_FUNCTION_PARAMETERS}; give numbers")
         start = 0 if first is None else 1
         field = FunctionField([f"x{a + 1}" for a in range(start, self.dimension)])
-        return InvariantMetric(self, (*([] if first is None else [field.convert(QQ.convert(first))]), *field.variables), field)
+        return InvariantMetric(
+            self, (*([] if first is None else [field.convert(QQ.convert(first))]), *field.variables), field
+        )
 
     def coordinates(self, form: ObjectArray) -> tuple[Any, ...]:
         """The parameters of an invariant symmetric form, given as an array (d, d)."""
@@ -196,7 +201,7 @@ def _projector(generator: ExactMatrix, polynomial: Polynomial, factor: Polynomia
 
 
 @final
-class InvariantMetric(Displayed):
+class InvariantMetric:
     """An invariant metric of G/H; its tensors are numpy arrays of exact numbers, or of rational functions.
 
     Attributes
@@ -274,7 +279,7 @@ class InvariantMetric(Displayed):
         """The curvature tensor: entry (i, j, k, l) is the part of R(m_i, m_j) m_k on m_l."""
         return self._curvature.copy()
 
-    def sectional(self, x: VectorLike, y: VectorLike) -> Any:
+    def sectional(self, x: VectorLike, y: VectorLike) -> Value:
         """Sectional curvature of the plane of two vectors, given by d coordinates each."""
         u, v = (np.asarray(self._vector(z), dtype=object) for z in (x, y))
         area = (u @ self._matrix @ u) * (v @ self._matrix @ v) - (u @ self._matrix @ v) ** 2
@@ -313,13 +318,14 @@ class InvariantMetric(Displayed):
         """The parameters of the Ricci tensor, which is an invariant symmetric form; it does not depend on scale."""
         return self.metrics.coordinates(self._ricci)
 
-    def scalar(self) -> Any:
+    def scalar(self) -> Value:
         """The scalar curvature."""
-        return _simplified((self._raised * self._ricci).sum())
+        return _simplified(np.array([(self._raised * self._ricci).sum()], dtype=object))[0]
 
-    def einstein_constant(self) -> Any | None:
+    def einstein_constant(self) -> Value | None:
         """The number c with Ric = c g, or None if the metric is not an Einstein metric."""
-        constant = self.scalar() / len(self._matrix)
+        total: Any = self.scalar()
+        constant: Value = total / len(self._matrix)
         return constant if bool((self._ricci == self._matrix * constant).all()) else None
 
     def holonomy(self) -> Subalgebra:
@@ -412,21 +418,20 @@ def _solved(table: ObjectArray, right: ObjectArray) -> list[Any]:
     for c in range(size):
         pivot = next(i for i in range(c, size) if rows[i][c] != 0)
         rows[c], rows[pivot] = rows[pivot], rows[c]
-        rows[c] = [_simplified(x / rows[c][c]) if x != 0 else x for x in rows[c]]
+        rows[c] = [(x / rows[c][c]).cancelled() if x != 0 else x for x in rows[c]]
         for i in range(size):
             if i != c and rows[i][c] != 0:
                 factor = rows[i][c]
-                rows[i] = [_simplified(x - factor * y) if y != 0 else x for x, y in zip(rows[i], rows[c], strict=True)]
+                rows[i] = [(x - factor * y).cancelled() if y != 0 else x for x, y in zip(rows[i], rows[c], strict=True)]
     return [row[-1] for row in rows]
 
 
-def _simplified(value: Any) -> Any:
-    """A number, a rational function or an array of them, with cancelled fractions."""
-    if isinstance(value, np.ndarray):
-        table = np.empty(value.shape, dtype=object)
-        table.reshape(-1)[:] = [_simplified(x) for x in value.reshape(-1)]
-        return table
-    return value.cancelled() if isinstance(value, RationalFunction) else value
+def _simplified(values: ObjectArray) -> ObjectArray:
+    """The array with the fractions of rational functions cancelled."""
+    table: ObjectArray = np.empty(values.shape, dtype=object)
+    flat = values.reshape(-1)
+    table.reshape(-1)[:] = [x.cancelled() if isinstance(x, RationalFunction) else x for x in flat]
+    return table
 
 
 def is_naturally_reductive(pair: Pair, metric: InvariantMetric) -> bool:

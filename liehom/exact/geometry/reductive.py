@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import final
+from typing import TypeAlias, final
 
 import numpy as np
 import numpy.typing as npt
@@ -19,10 +19,15 @@ from liehom.base.errors import InputError, NotReductiveError, SingularError, Und
 from liehom.exact.representations.core.pair import Pair
 from liehom.exact.representations.invariants.intertwiners import intertwiners
 from liehom.exact.scalars.exact_field import ExactField, ExactMatrix, as_exact
+from liehom.exact.scalars.field import Scalar
+from liehom.exact.scalars.function_field import RationalFunction
 from liehom.exact.scalars.subspaces import Subspace
 
-ObjectArray = npt.NDArray[np.object_]
+ObjectArray: TypeAlias = npt.NDArray[np.object_]
 """Array of exact numbers: ``flint.fmpq``, `AlgebraicNumber` or `RationalFunction`."""
+
+Value: TypeAlias = Scalar | RationalFunction
+"""An exact number, or a rational function of the parameters of a metric."""
 
 
 @final
@@ -82,7 +87,7 @@ def require_exact(pair: Pair) -> ExactField:
     """The field of a pair; `UndecidedError` over floats, which names the way out."""
     if not isinstance(pair.field, ExactField):
         raise UndecidedError(
-            f"{displayed(pair)} has floats, and rounding decides its invariant geometry; make it exact by lh.rationalize"
+            f"{displayed(pair)} has floats, and rounding decides its geometry; make it exact by lh.rationalize"
         )
     return pair.field
 
@@ -148,7 +153,9 @@ def _corrected_complement(pair: Pair, lower: ExactMatrix) -> ExactMatrix:
     return as_exact(lift) - phi @ lower
 
 
-def _without_complement(pair: Pair, system: ExactMatrix, right: ExactMatrix, shape: tuple[int, int]) -> NotReductiveError:
+def _without_complement(
+    pair: Pair, system: ExactMatrix, right: ExactMatrix, shape: tuple[int, int]
+) -> NotReductiveError:
     """The error with the combination of equations that reads 0 = 1."""
     combinations = system.left_null_space()
     values = combinations @ right
@@ -158,7 +165,7 @@ def _without_complement(pair: Pair, system: ExactMatrix, right: ExactMatrix, sha
     proof = {(x // (d * k), x // k % d, x % k): v for x, v in enumerate(row.entries()) if v != 0}
     return NotReductiveError(
         {index: system.field.format(value) for index, value in proof.items()},
-        f"{displayed(pair)} is not reductive: h has no ad(h)-invariant complement. The equations for one, combined with "
+        f"{displayed(pair)} is not reductive: h has no ad(h)-invariant complement. The equations for one, combined by "
         f"the {len(proof)} coefficients of `proof`, read 0 = 1; metrics and connections of G/H need a complement here",
     )
 

@@ -4,13 +4,13 @@ The counts are up to scale. Sources:
 
 - Ziller: W. Ziller, Homogeneous Einstein metrics on spheres and projective spaces, Math. Ann. 259 (1982).
 - Nikonorov: Yu. Nikonorov, Compact homogeneous Einstein 7-manifolds, Geom. Dedicata 109 (2004).
-- Chrysikos-Sakane: The classification of homogeneous Einstein metrics on flag manifolds with b2(M) = 1, arXiv:1206.1306,
-  whose Table 1 collects Kimura, Arvanitoyeorgos, Chrysikos, Sakane.
+- Chrysikos-Sakane: The classification of homogeneous Einstein metrics on flag manifolds with b2(M) = 1,
+  arXiv:1206.1306, whose Table 1 collects Kimura, Arvanitoyeorgos, Chrysikos, Sakane.
 - Arvanitoyeorgos: Progress on homogeneous Einstein manifolds and some open problems, arXiv:1605.05886.
 - Sakane: Homogeneous Einstein metrics on flag manifolds, Lobachevskii J. Math. 4 (1999).
 - Alekseevsky-Dotti-Ferraris: Homogeneous Ricci positive 5-manifolds, Pacific J. Math. 175 (1996).
 - Nikonorov-Rodionov: Compact homogeneous Einstein 6-manifolds, Differential Geom. Appl. 19 (2003).
-- Boehm-Kerr: Low-dimensional homogeneous Einstein manifolds, Trans. AMS 358 (2006); Wang-Ziller, Invent. Math. 84 (1986).
+- Boehm-Kerr: Low-dimensional homogeneous Einstein manifolds, Trans. AMS 358 (2006).
 - Wolf: J. Wolf, The geometry and structure of isotropy irreducible homogeneous spaces, Acta Math. 120 (1968).
 """
 
@@ -123,7 +123,16 @@ def irreducible_su2() -> lh.Pair:
 
 named = partial(partial, lh.pair)
 
-IRREDUCIBLE = "so(5)/so(4) su(3)/u(2) sp(2)/sp(1)+sp(1) su(3)/so(3) g2/su(3) spin(7)/g2 so(6)/so(3)+so(3) so(6)/u(3)".split()
+IRREDUCIBLE = [
+    "so(5)/so(4)",
+    "su(3)/u(2)",
+    "sp(2)/sp(1)+sp(1)",
+    "su(3)/so(3)",
+    "g2/su(3)",
+    "spin(7)/g2",
+    "so(6)/so(3)+so(3)",
+    "so(6)/u(3)",
+]
 
 # name, pair, number of metrics, number of kinds, source
 EINSTEIN: list[tuple[str, Callable[[], lh.Pair], int, int, str]] = [

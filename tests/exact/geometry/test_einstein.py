@@ -32,7 +32,8 @@ def array(table: object) -> np.ndarray:
 def koszul_ricci(metric: object) -> np.ndarray:
     """Ric(e_a, e_a) in an orthonormal frame, as the sum of sectional curvatures of planes by brackets of g.
 
-    <R(X, Y) Y, X> = -3/4 |[X, Y]_m|^2 - 1/2 <[X, [X, Y]]_m, Y> - 1/2 <[Y, [Y, X]]_m, X> + |U(X, Y)|^2 - <U(X, X), U(Y, Y)>.
+    <R(X, Y) Y, X> is the sum of -3/4 |[X, Y]_m|^2, -1/2 <[X, [X, Y]]_m, Y>, -1/2 <[Y, [Y, X]]_m, X>, |U(X, Y)|^2 and
+    -<U(X, X), U(Y, Y)>.
     """
     pair = metric.metrics.pair
     g, m = pair.algebra, pair.reductive_complement().basis
@@ -48,7 +49,9 @@ def koszul_ricci(metric: object) -> np.ndarray:
         brackets = np.array([frame @ a for a in acting])
         inside = brackets @ dual
         twice = np.array([b @ a for a, b in zip(acting, brackets, strict=True)]) @ dual  # [X, [X, Y]]_m
-        u = np.array([[[(inside[c, a, b] + inside[c, b, a]) / 2 for c in range(d)] for b in range(d)] for a in range(d)])
+        u = np.array(
+            [[[(inside[c, a, b] + inside[c, b, a]) / 2 for c in range(d)] for b in range(d)] for a in range(d)]
+        )
         values = []
         for a in range(d):
             total = mpmath.mpf(0)
@@ -69,7 +72,9 @@ def test_counts_of_the_literature_and_three_computations_of_ricci(
     for member in found:
         assert member.verify()
         constant = precise(member.constant)
-        assert all(abs(x - constant) < mpmath.mpf(10) ** -DIGITS * (1 + abs(constant)) for x in koszul_ricci(member.metric))
+        assert all(
+            abs(x - constant) < mpmath.mpf(10) ** -DIGITS * (1 + abs(constant)) for x in koszul_ricci(member.metric)
+        )
         assert_critical(member.metric, member.constant)
 
 

@@ -177,11 +177,12 @@ def test_symplectic_forms(pair: lh.Pair, closed: int, exist: bool) -> None:
     assert (len(forms.closed), forms.exist) == (closed, exist)
     if forms.example is not None:
         assert forms.example.rank() == pair.dimension
-        assert forms.example.T == -forms.example
+        assert -forms.example == forms.example.T
 
 
 @pytest.mark.parametrize(
-    ("name", "dimension"), [("so(4)/so(3)", 1), ("so(5)/so(4)", 0), ("g2/su(3)", 2), ("su(3)/so(3)", 1), ("so(3)/0", 27)]
+    ("name", "dimension"),
+    [("so(4)/so(3)", 1), ("so(5)/so(4)", 0), ("g2/su(3)", 2), ("su(3)/so(3)", 1), ("so(3)/0", 27)],
 )
 def test_invariant_connections(name: str, dimension: int) -> None:
     pair = lh.pair(name) if not name.endswith("/0") else lh.Pair(lh.so(3), [])

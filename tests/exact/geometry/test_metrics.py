@@ -4,14 +4,13 @@ from itertools import combinations
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 import liehom as lh
 from liehom.exact.geometry.metrics import InvariantMetric
 from tests.exact.geometry.spaces import aloff_wallach, product_of_spheres, su_flag
 
-# name, Einstein constant over the largest and the smallest sectional curvature (by closed formulas), holonomy dimension.
+# name, n, dimension of the holonomy algebra.
 # CP^n with curvature in [1, 4] has Ric = (2n + 2) g, HP^n has Ric = (4n + 8) g, the Cayley plane Ric = 36 g.
 SPHERES = [(f"so({n + 1})/so({n})", n, n * (n - 1) // 2) for n in range(2, 13)]
 PROJECTIVE = [(f"su({n + 1})/u({n})", n, n * n) for n in range(1, 7)]
@@ -66,7 +65,7 @@ def test_projective_space_is_quarter_pinched(name: str, factor: tuple[int, int])
     assert metric.einstein_constant() == factor[0] * holomorphic / 4
     form = metric.kaehler_form()
     assert form is not None
-    assert form.T == -form
+    assert -form == form.T
 
 
 @pytest.mark.parametrize(("name", "n", "holonomy"), QUATERNIONIC[1:])
@@ -239,7 +238,7 @@ def is_same(a: object, b: object) -> bool:
 
 def test_not_reductive_error_carries_a_combination_that_proves_it() -> None:
     pair = lh.pair("sl(3)/P1")
-    with pytest.raises(lh.errors.NotReductiveError, match="reads? 0 = 1|read 0 = 1") as caught:
+    with pytest.raises(lh.errors.NotReductiveError, match="read 0 = 1") as caught:
         pair.invariant_metrics()
     assert caught.value.proof
     assert not pair.is_reductive()
@@ -283,7 +282,7 @@ def test_symmetric_pairs_that_are_not_semisimple() -> None:
 def test_floats_are_refused_with_the_way_out() -> None:
     pair = lh.defining(lh.so(4)).pair([0.6, 0, 0, 0.8])
     for question in (pair.reductive_complement, pair.is_reductive, pair.invariant_metrics, pair.is_symmetric):
-        with pytest.raises(lh.UndecidedError, match="lh.rationalize"):
+        with pytest.raises(lh.UndecidedError, match="make it exact"):
             question()
 
 

@@ -1,7 +1,7 @@
 """Real solutions of polynomial equations over QQ with finitely many complex ones, each exact in its number field.
 
-A Groebner basis gives the finite-dimensional algebra A of polynomial functions on the solutions. The squarefree parts of
-the minimal polynomials of the variables, added to the equations, make A reduced (Seidenberg). A linear form l that
+A Groebner basis gives the finite-dimensional algebra A of polynomial functions on the solutions. The squarefree parts
+of the minimal polynomials of the variables, added to the equations, make A reduced (Seidenberg). A linear form l that
 separates the solutions then generates A, the variables are polynomials in l, and the solutions are the roots of the
 minimal polynomial of l, whose irreducible factors define the number fields.
 """
@@ -188,9 +188,7 @@ def _integer_value(p: Polynomial, x: flint.fmpz_mpoly) -> flint.fmpz_mpoly:
     return total
 
 
-def _points(
-    algebra: _Algebra, size: int, possible: Callable[[Sequence[flint.arb]], bool]
-) -> Iterator[RealSolution]:
+def _points(algebra: _Algebra, size: int, possible: Callable[[Sequence[flint.arb]], bool]) -> Iterator[RealSolution]:
     """The real solutions of a reduced algebra, by a linear form that separates them."""
     rng, degree = random.Random(5), len(algebra.monomials)
     for attempt in range(20):
