@@ -55,7 +55,7 @@ class InvariantMetrics:
     >>> su3 = lh.su(3)
     >>> metrics = lh.Pair(su3, su3.cartan_subalgebra()).invariant_metrics()
     >>> metrics.dimension, metrics([1, 1, 2]).ricci_parameters()
-    (3, (3, 3, 4))
+    (3, (4, 4, 8))
     """
 
     def __init__(self, pair: Pair) -> None:
@@ -106,10 +106,7 @@ class InvariantMetrics:
     def __call__(self, parameters: Sequence[ScalarLike]) -> InvariantMetric:
         """The metric x_1 F_1 + ... + x_r F_r; `SingularError` if it is degenerate.
 
-        Parameters
-        ----------
-        parameters : sequence of r numbers
-            Of the field of the pair, or, if that is QQ, of one real number field.
+        The r numbers are of the field of the pair or, if that is QQ, of one real number field.
         """
         values: list[Any] = list(parameters)
         if len(values) != self.dimension:
@@ -180,7 +177,7 @@ class InvariantMetrics:
         >>> su3 = lh.su(3)
         >>> found = lh.Pair(su3, su3.cartan_subalgebra()).invariant_metrics().einstein()
         >>> [metric.parameters for metric in found], found.complete
-        ([(1, 1, 2), (1, 1, 1), (1, 1/2, 1/2), (1, 2, 1)], True)
+        ([(1, 1, 1), (1, 1, 2), (1, 2, 1), (1, 1/2, 1/2)], True)
         """
         from liehom.exact.geometry.einstein import einstein_metrics
 

@@ -176,7 +176,7 @@ class Pair(Displayed, Immutable):
         --------
         >>> import liehom as lh
         >>> lh.pair("g2/su(3)").invariant_metrics()([1]).einstein_constant()
-        5/12
+        5
         """
         from liehom.exact.geometry.metrics import InvariantMetrics
 
