@@ -230,7 +230,7 @@ def _adapted_forms(metrics: InvariantMetrics, rows: ExactMatrix) -> list[ExactMa
 
 def _numbered(found: Sequence[InvariantMetric], complete: bool, reason: str) -> EinsteinMetrics:
     """The metrics with their constants, sorted by kind."""
-    constants = [m.einstein_constant() for m in found]
+    constants: list[Any] = [m.einstein_constant() for m in found]
     volumes = [_key(m.field, _volume(m, c)) for m, c in zip(found, constants, strict=True)]
     keys = [
         (v, _key(m.field, _norm(m, c)) if volumes.count(v) > 1 else None)

@@ -73,7 +73,7 @@ class InvariantDifferentialForms:
         space: ExactMatrix = field.identity(width)
         for z in self._split.isotropy:
             in_time()
-            rules = [{(j,): -c for j, c in enumerate(z.row(i)) if c != 0} for i in range(z.nrows)]
+            rules: list[Form] = [{(j,): -c for j, c in enumerate(z.row(i)) if c != 0} for i in range(z.nrows)]
             images: list[list[Scalar]] = []
             for indices in self._tuples:
                 row = [field.zero] * width

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from functools import reduce
 from itertools import count, product
 from math import lcm
-from typing import final
+from typing import Any, final
 
 import flint
 
@@ -125,8 +125,8 @@ def _divides(a: Exponents, b: Exponents) -> bool:
 def _groebner(equations: list[flint.fmpz_mpoly]) -> list[flint.fmpz_mpoly]:
     """The reduced Groebner basis, with tails reduced at each step, without which coefficients grow fast."""
     ring = equations[0].context()
-    basis: dict[Exponents, flint.fmpz_mpoly] = {}
-    queue = list(equations)
+    basis: dict[Exponents, Any] = {}  # the type stubs of flint lack its S-polynomials
+    queue: list[Any] = list(equations)
     pairs: list[tuple[int, Exponents, Exponents]] = []
     for steps in count():
         in_time()

@@ -131,7 +131,7 @@ def _corrected_complement(pair: Pair, lower: ExactMatrix) -> ExactMatrix:
     field, n, k = lower.field, pair.algebra.dimension, lower.nrows
     lift, on_m = pair.subalgebra.subspace.quotient_map()
     d, table = lift.nrows, pair.algebra.table
-    on_h = as_exact(field.stack_rows([lower, lift], n)).inverse().select(columns=range(k))
+    on_h = as_exact(field.stack_rows([lower, as_exact(lift)], n)).inverse().select(columns=range(k))
     acting = [as_exact(b) for b in table.contract(lower, lift, on_m)]  # rows: [z, w_j] in V
     leaving = [as_exact(b) for b in table.contract(lower, lift, on_h)]  # rows: the part in h
     inner = [as_exact(b) for b in table.contract(lower, lower, on_h)]
