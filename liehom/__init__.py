@@ -3,7 +3,7 @@
 Two halves stand on one base, and meet at one door. Each floor imports only those below it:
 
 `base`      errors, types, limits, files that are written whole, tasks on executors.
-`exact`     scalars, Lie algebras, representations, orbits, full pairs, qubits, names; no trajectory and no engine.
+`exact`     scalars, Lie algebras, representations, orbits, invariant geometry, full pairs, qubits, names; no engine.
 `flow`      actions, Taylor series, steps, runs and engines: trajectories on orbits. `flow.door` leads to `exact`.
 `plotting`  pictures.
 `studies`   the systems and figures of the paper, the atlas of pairs.

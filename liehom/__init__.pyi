@@ -38,6 +38,7 @@ from liehom.exact import (
     algebra as algebra,
     catalog as catalog,
     fullness as fullness,
+    geometry as geometry,
     orbits as orbits,
     pauli as pauli,
     representations as representations,

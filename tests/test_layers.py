@@ -25,7 +25,7 @@ ORDER: dict[str, list[str]] = {
         "liehom": "base exact flow plotting studies io testing cli __main__",
         "liehom.base": "errors budget disk lazy objects store tasks typing pytrees",
         "liehom.cli": "completion guard help inputs atlas_command integration objects plot_command reproduce app",
-        "liehom.exact": "scalars algebra representations pauli orbits fullness catalog",
+        "liehom.exact": "scalars algebra representations pauli orbits geometry fullness catalog",
         "liehom.exact.algebra": "core linear roots constructions structure involutions",
         "liehom.exact.algebra.constructions": "classical family sums families",
         "liehom.exact.algebra.core": "structure_constants jacobi tables lie_algebra subalgebra homomorphism",
@@ -42,6 +42,7 @@ ORDER: dict[str, list[str]] = {
         ),
         "liehom.exact.fullness.checker": "verify_modular verify_roots verify_pair verify",
         "liehom.exact.fullness.search": "dominance forms witnesses",
+        "liehom.exact.geometry": "reductive metrics polynomial_systems einstein forms",
         "liehom.exact.orbits": "conjugacy range cone types strata",
         "liehom.exact.pauli": "words span simple_ideals dynamical",
         "liehom.exact.representations": "invariants core rationalization highest_weight constructions analysis",
@@ -86,6 +87,7 @@ CLASS_FILES = (
     "liehom.exact.algebra.core.subalgebra",
     "liehom.exact.representations.core.representation",
     "liehom.exact.representations.core.pair",
+    "liehom.exact.geometry.metrics",
 )
 DOOR = "liehom.flow.door"
 
@@ -93,7 +95,8 @@ MAX_MODULES = 18
 
 # libraries behind one door: only modules that start with one of these names may import them
 LIBRARIES: dict[str, tuple[str, ...]] = {
-    "flint": ("liehom.exact.scalars", "liehom.flow.series"),  # series: recognises its numbers
+    # series: recognises its numbers; polynomial systems: Groebner bases of flint's polynomials
+    "flint": ("liehom.exact.scalars", "liehom.flow.series", "liehom.exact.geometry.polynomial_systems"),
     # points with symbols in them: linear algebra over a field of rational functions, by DomainMatrix
     "sympy.polys": ("liehom.exact.scalars", "liehom.exact.representations.analysis.symbolic"),
     "networkx": ("liehom.exact.algebra",),

@@ -214,6 +214,21 @@ class NotCompletelyReducibleError(InputError):
     """A representation is not a sum of irreducible ones, or an invariant subspace has no invariant complement."""
 
 
+class NotReductiveError(InputError):
+    """No complement of h is invariant under ad(h): `proof` combines the equations for one to 0 = 1.
+
+    Attributes
+    ----------
+    proof : dict
+        From (z, j, a) to a coefficient, a string: the equation that the part of [h_z, m_j] on h_a vanishes, where h_z
+        is row z of the subalgebra and m_j is row j of the standard complement plus an unknown element of h.
+    """
+
+    def __init__(self, proof: dict[tuple[int, int, int], str], what: str) -> None:
+        self.proof = proof
+        super().__init__(what)
+
+
 class NotClosedError(InputError):
     """Matrices do not span a Lie algebra: `pair` names two whose commutator leaves the span."""
 

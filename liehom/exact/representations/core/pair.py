@@ -10,8 +10,15 @@ from liehom.base.typing import VectorLike
 from liehom.exact.algebra.core.lie_algebra import LieAlgebra
 from liehom.exact.algebra.core.subalgebra import Subalgebra
 from liehom.exact.scalars.field import Field, Matrix, MatrixLike
+from liehom.exact.scalars.subspaces import Subspace
 
 if TYPE_CHECKING:
+    from liehom.exact.geometry.forms import (
+        InvariantConnections,
+        InvariantDifferentialForms,
+        InvariantSymplecticForms,
+    )
+    from liehom.exact.geometry.metrics import InvariantMetric, InvariantMetrics
     from liehom.exact.representations.core.representation import Representation
 
 
@@ -118,6 +125,129 @@ class Pair(Displayed, Immutable):
         from liehom.exact.representations.analysis.decomposition import is_primitive
 
         return is_primitive(self)
+
+    # -- invariant geometry, see docs/theory/geometry.md ---------------------------------------------------
+    def reductive_complement(self) -> Subspace:
+        """An ad(h)-invariant complement of h in g: orthogonal for the Killing form, if that is not degenerate on h.
+
+        Raises
+        ------
+        NotReductiveError
+            If there is none; its `proof` combines the linear equations for one to 0 = 1.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> lh.pair("so(3)/so(2)").reductive_complement().dimension, lh.pair("sl(2)/B").is_reductive()
+        (2, False)
+        """
+        from liehom.exact.geometry.reductive import reductive_complement
+
+        return reductive_complement(self)
+
+    def is_reductive(self) -> bool:
+        """Whether h has an ad(h)-invariant complement in g."""
+        from liehom.exact.geometry.reductive import is_reductive
+
+        return is_reductive(self)
+
+    def is_symmetric(self) -> bool:
+        """Whether h is the fixed algebra of an involution of g: [m, m] in h for an invariant complement m.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> [lh.pair(name).is_symmetric() for name in ("so(5)/so(4)", "g2/su(3)")]
+        [True, False]
+        """
+        from liehom.exact.geometry.reductive import is_symmetric
+
+        return is_symmetric(self)
+
+    def invariant_metrics(self) -> InvariantMetrics:
+        """The invariant metrics of G/H, with their curvature: ``metrics([1, 2, 3])`` is one of them.
+
+        Raises
+        ------
+        NotReductiveError
+            If h has no invariant complement.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> lh.pair("g2/su(3)").invariant_metrics()([1]).einstein_constant()
+        5
+        """
+        from liehom.exact.geometry.metrics import InvariantMetrics
+
+        return InvariantMetrics(self)
+
+    def is_naturally_reductive(self, metric: InvariantMetric) -> bool:
+        """Whether <[X, Y]_m, Z> + <Y, [X, Z]_m> = 0 for an invariant complement m of this g and h."""
+        from liehom.exact.geometry.metrics import is_naturally_reductive
+
+        return is_naturally_reductive(self, metric)
+
+    def invariant_forms(self, degree: int) -> InvariantDifferentialForms:
+        """The invariant differential forms of G/H of a degree.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> [lh.pair("g2/su(3)").invariant_forms(k).dimension for k in range(7)]
+        [1, 0, 1, 2, 1, 0, 1]
+        """
+        from liehom.exact.geometry.forms import invariant_differential_forms
+
+        return invariant_differential_forms(self, degree)
+
+    def invariant_cohomology(self) -> tuple[int, ...]:
+        """Dimensions of the relative cohomology H^k(g, h), k = 0, ..., d: Betti numbers of G/H if G is compact.
+
+        H is connected here; a larger group with this Lie algebra may have fewer invariant forms.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> lh.pair("su(3)/u(2)").invariant_cohomology(), lh.pair("so(4)/so(3)").invariant_cohomology()
+        ((1, 0, 1, 0, 1), (1, 0, 0, 1))
+        """
+        from liehom.exact.geometry.forms import invariant_cohomology
+
+        return invariant_cohomology(self)
+
+    def invariant_symplectic_forms(self) -> InvariantSymplecticForms:
+        """The closed invariant 2-forms of G/H, and whether one of them is symplectic."""
+        from liehom.exact.geometry.forms import InvariantSymplecticForms
+
+        return InvariantSymplecticForms(self)
+
+    def invariant_complex_structures(self) -> tuple[Matrix, ...]:
+        """All invariant complex structures J of G/H, matrices (d, d) on columns of V.
+
+        Raises
+        ------
+        UndecidedError
+            If isotropy summands are equivalent, so that the J with J^2 = -1 form families.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> su3 = lh.su(3)
+        >>> len(lh.Pair(su3, su3.cartan_subalgebra()).invariant_complex_structures())
+        6
+        >>> lh.pair("g2/su(3)").invariant_complex_structures()
+        ()
+        """
+        from liehom.exact.geometry.forms import invariant_complex_structures
+
+        return invariant_complex_structures(self)
+
+    def invariant_connections(self) -> InvariantConnections:
+        """The invariant affine connections of G/H, by Nomizu maps V x V -> V, with torsion and curvature."""
+        from liehom.exact.geometry.forms import InvariantConnections
+
+        return InvariantConnections(self)
 
     def coordinates(self, x: VectorLike) -> Matrix:
         """The coordinates of x mod h, a row matrix (1, d), in the complement of ``subalgebra.quotient()``."""
