@@ -138,7 +138,8 @@ class LlvmEngine:
 class CodeStore:
     """Traces, machine code and schedules for one field, step, exponential and clock."""
 
-    def __init__(self) -> None:
+    def __init__(self, code: type[Kernel] = Kernel) -> None:
+        self.code = code
         self.graphs: dict[Hashable, StepGraph] = {}
         self.kernels: dict[Hashable, Kernel] = {}
         self.schedules: dict[RunSchedule, Schedule] = {}
@@ -170,9 +171,9 @@ class CodeStore:
 
     def kernel(self, key: Hashable, graph: StepGraph, lanes: int) -> Kernel:
         """The machine code of a graph, in blocks for this number of lanes."""
-        width = block_width(graph, lanes)
+        width = block_width(graph, lanes) if self.code is Kernel else 1
         if (key, width) not in self.kernels:
-            self.kernels[key, width] = Kernel(graph, width)
+            self.kernels[key, width] = self.code(graph, width)
         return self.kernels[key, width]
 
     def schedule(self, run: Run) -> Schedule:
@@ -312,7 +313,7 @@ class _CompiledRun:
             {
                 **self._given(kernel, lanes),
                 "begin": begin, "end": end, "sizes": plan.sizes, "times": plan.times,
-                "codes": plan.codes, "repeats": plan.repeats, "out": out.ctypes.data - low * n * state.shape[1] * 8,
+                "codes": plan.codes - 2 * low, "repeats": plan.repeats, "out": out,
             },
             end - begin,
         )  # fmt: skip
