@@ -61,11 +61,11 @@ class LlvmEngine:
 
     name = "llvm"
 
-    def __init__(self) -> None:
-        self._store = CodeStore()
+    def __init__(self, store: CodeStore | None = None, watch: Watch | None = None) -> None:
+        self._store = CodeStore() if store is None else store
         self._plans: dict[Hashable, Plan] = {}
         self._lattice: LatticeStep | None = None
-        self._watch: Watch | None = None
+        self._watch = watch  # of the psi from which the store was made
 
     def __reduce__(self) -> tuple[type[LlvmEngine], tuple[()]]:
         return type(self), ()  # machine code belongs to a process
@@ -82,10 +82,10 @@ class LlvmEngine:
             solution = solved_on_lattice(problem, step)
             self._lattice = step
             return solution
-        runs: list[_CompiledRun] = []
+        runs: list[CompiledRun] = []
 
         def fast_path(run: Run) -> Callable[[Run], bool]:
-            runs.append(_CompiledRun(run, self._store))
+            runs.append(CompiledRun(run, self._store))
             return runs[0]
 
         solution = executed(problem, fast_path)
@@ -104,7 +104,7 @@ class LlvmEngine:
             return None
         return None if plan is None else plan(y0, args)  # type: ignore[arg-type]
 
-    def _keep_plan(self, problem: Problem, run: _CompiledRun, solution: Solution) -> None:
+    def _keep_plan(self, problem: Problem, run: CompiledRun, solution: Solution) -> None:
         """Keep the plan of a call, if it was one that needs nothing but points and args."""
         o, (_, key, graph) = problem.options, run.groups[0]
         work = run.work * np.sum(solution.n_steps)
@@ -136,11 +136,11 @@ class LlvmEngine:
 
 @final
 class CodeStore:
-    """Traces, machine code and schedules for one field, step, exponential and clock."""
+    """Traces, code of a kind and schedules for one field, step, exponential and clock."""
 
-    def __init__(self, code: type[Kernel] = Kernel) -> None:
+    def __init__(self, code: type[Kernel] = Kernel, graphs: dict[Hashable, StepGraph] | None = None) -> None:
         self.code = code
-        self.graphs: dict[Hashable, StepGraph] = {}
+        self.graphs: dict[Hashable, StepGraph] = {} if graphs is None else graphs
         self.kernels: dict[Hashable, Kernel] = {}
         self.schedules: dict[RunSchedule, Schedule] = {}
 
@@ -187,15 +187,15 @@ class CodeStore:
 
 
 @final
-class _CompiledRun:
-    """Steps of a run by machine code; the number of steps in one call has no effect on the results."""
+class CompiledRun:
+    """Steps of a run by code of a kind; the number of steps in one call has no effect on the results."""
 
-    def __init__(self, run: Run, store: CodeStore) -> None:
+    def __init__(self, run: Run, store: CodeStore, most: int | None = None) -> None:
         if run.dtype != np.float64:
             raise InputError(
                 f"engine='llvm' computes in float64, the start is of type {run.dtype}: take engine='numpy'"
             )
-        self.store = store
+        self.store, self.most = store, most  # steps of a call
         self.search = None if run.stops.events is None else EventSearch(run)
         self.start = run.start.reshape(-1, run.start.shape[-1]).astype(np.float64)
         dimensions = np.broadcast_to(np.asarray(run.psi.orbit_dimension), run.shape).reshape(-1)
@@ -233,8 +233,10 @@ class _CompiledRun:
         steps = steps_per_call(run, self.work, 1 if self.search is None else COPIES_WITH_EVENTS)
         if self.search is not None and self.search.ends_runs:
             steps = min(steps, max(MIN_STEPS_WITH_ENDS, int(np.max(now.taken))))
+        steps = steps if self.most is None else min(steps, self.most)
         if steps < 1:
             return False
+        run.engines[self.store.code.engine] = None
         back = HandBack(run)
         for members, key, graph in self.groups:
             here = members[active[members]]

@@ -26,7 +26,7 @@ def integrate(
     args: Pytree = None,
     exponential: ExponentialLike = "exp",
     clock: str = "corrected",
-    engine: str | Engine = "numpy",
+    engine: str | Engine = "auto",
     **options: Unpack[CallOptions],
 ) -> Solution:
     """Trajectories of m' = rho(psi(m, t)) m, a `Solution` that stays on the orbit of the initial point.

@@ -13,7 +13,7 @@ from collections.abc import Mapping, Sequence
 from functools import cache
 from pathlib import Path
 from types import ModuleType
-from typing import Any, TypeAlias
+from typing import Any, ClassVar, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -169,6 +169,8 @@ class Kernel:
     cached : bool
         Whether the code was found in the cache.
     """
+
+    engine: ClassVar[str] = "llvm"  # as reports name it
 
     def __init__(self, graph: StepGraph, width: int) -> None:
         self.graph, self.width = graph, width

@@ -1,7 +1,7 @@
 """Python code of a run, for machines without a compiler: straight-line code on floats, a statement for each operation.
 
-A step is one function of numbers. Python raises errors where arithmetic gives inf or NaN (1 / 0, the root of -1); such a
-step is made again by the same code on numpy's numbers, which raise none.
+A step is one function of numbers. Python raises errors where arithmetic gives inf or NaN (1 / 0, the root of -1); such
+a step is made again by the same code on numpy's numbers, which raise none.
 """
 
 from __future__ import annotations
@@ -59,10 +59,12 @@ class _Text:
 
     def compiled(self) -> tuple[dict[str, Any], dict[str, Any]]:
         """The functions by name, on Python's floats and on numpy's numbers."""
-        code = compile("\n".join([*self._functions.values(), _rotation("sinq"), _rotation("cosq"), *self.lines]), "", "exec")
+        code = compile(
+            "\n".join([*self._functions.values(), _rotation("sinq"), _rotation("cosq"), *self.lines]), "", "exec"
+        )
         spaces = _spaces()
         for space in spaces:
-            exec(code, space)  # noqa: S102 - text that was written here, of numbers and names of operations
+            exec(code, space)
         return spaces
 
     def _count(self, operations: Sequence[Expr]) -> None:
@@ -128,7 +130,9 @@ class _Text:
         self._texts |= {v.index: (name, 0) for v, name in zip(loop.variables, names, strict=True)}
         starts = ", ".join(self._text(a) for a in x.args[: len(names)])
         self.lines.append(f"{indent}{', '.join(names)},={starts},")
-        self.lines.append(f"{indent}for _ in range({loop.limit if not loop.guarded else f'{loop.limit} if {names[0]} else 0'}):")
+        self.lines.append(
+            f"{indent}for _ in range({loop.limit if not loop.guarded else f'{loop.limit} if {names[0]} else 0'}):"
+        )
         self._write(loop.inside, indent + " ")
         new, again = [self._text(y) for y in loop.new], self._text(loop.again)
         last = f"again{x.index}"
@@ -138,21 +142,27 @@ class _Text:
     def _exponential(self, places: Sequence[tuple[int, int]], n: int) -> str:
         """The name of the function (A, m) -> exp(A) m for the places of the entries of A, by its Taylor polynomial."""
         name = "exponential_" + "_".join(f"{i}_{j}" for i, j in places) + f"_{n}"
-        entries, point, sums = [f"a{p}" for p in range(len(places))], [f"v{i}" for i in range(n)], [f"s{i}" for i in range(n)]
-        rows = ["+".join(f"{a}*{sums[j]}" for a, (k, j) in zip(entries, places, strict=True) if k == i) for i in range(n)]
+        entries, point, sums = (
+            [f"a{p}" for p in range(len(places))],
+            [f"v{i}" for i in range(n)],
+            [f"s{i}" for i in range(n)],
+        )
+        rows = [
+            "+".join(f"{a}*{sums[j]}" for a, (k, j) in zip(entries, places, strict=True) if k == i) for i in range(n)
+        ]
         terms = [f"{v}+({row})/k" if row else v for v, row in zip(point, rows, strict=True)]
         joined = [", ".join(x) for x in (entries, point, sums, terms)]
         self._functions[name] = f"""\
 def {name}({joined[0]}, {joined[1]}):
- q={'+'.join(f'{a}*{a}' for a in entries)}
+ q={"+".join(f"{a}*{a}" for a in entries)}
  parts=1
  if not q<={TOP * TOP!r}:
-  if not q<={MAX_NORM * MAX_NORM!r}: return ({'nan, ' * n})
+  if not q<={MAX_NORM * MAX_NORM!r}: return ({"nan, " * n})
   parts=int(ceil(sqrt(q)/{TOP!r}))
   w=1.0/parts
   q=q*w*w
-  {joined[0]},={', '.join(f'{a}*w' for a in entries)},
- degree={''.join(f'{d} if q<={r * r!r} else ' for r, d in LEVELS[:-1])}{LEVELS[-1][1]}
+  {joined[0]},={", ".join(f"{a}*w" for a in entries)},
+ degree={"".join(f"{d} if q<={r * r!r} else " for r, d in LEVELS[:-1])}{LEVELS[-1][1]}
  for _ in range(parts):
   {joined[2]},={joined[1]},
   for k in range(degree, 0, -1):
@@ -192,7 +202,7 @@ def _spaces() -> tuple[dict[str, Any], dict[str, Any]]:
 class PythonKernel(Kernel):
     """The run of a traced step in Python, one lane after the other; attributes and argument are those of `Kernel`."""
 
-    cached = False
+    engine = "python"
 
     def _build(self, constants: Sequence[Constant]) -> None:
         graph, n, text = self.graph, self.graph.size, _Text()
@@ -218,7 +228,7 @@ class PythonKernel(Kernel):
             values: list[float] = np.array(self._spaces[1][name](*map(np.float64, args)), dtype=np.float64).tolist()
             return values
 
-    def __call__(self, state: npt.NDArray[np.float64], **fields: Any) -> None:
+    def __call__(self, state: npt.NDArray[np.float64], **fields: npt.NDArray[Any] | float | None) -> None:
         for lane in range(fields.get("first", 0), fields.get("last", state.shape[1])):
             row = dict(zip(self.names, state[:, lane].tolist(), strict=True))
             start: list[float] = fields["start"][: self.graph.size, lane].tolist()
@@ -267,7 +277,13 @@ class PythonKernel(Kernel):
 
     def _by_itself(self, row: dict[str, float], given: list[float], lane: int, fields: dict[str, Any]) -> None:
         """Steps of a lane with its own sizes and times."""
-        n, stops, out, path, last = self.graph.size, fields["stops"].tolist(), fields["out"], fields["path"], fields["last_stop"]
+        n, stops, out, path, last = (
+            self.graph.size,
+            fields["stops"].tolist(),
+            fields["out"],
+            fields["path"],
+            fields["last_stop"],
+        )
         point: Numbers = list(row.values())[:n]
         time, size, stop = row["t"], row["h"], int(row["stop"])
         if size == math.inf:
