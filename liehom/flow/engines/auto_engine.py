@@ -6,8 +6,8 @@ What was done before decides, by counts and not by the clock, so that a script g
 * Then a few trajectories are stepped by straight-line Python (`PythonKernel`), if the step can be traced.
 * Then by machine code, if llvmlite can be imported, as soon as it would have been made for the work done so far.
 
-Fields on lattices, extended precision, events, and checkpoints, which go on bit for bit, stay with numpy. So do a psi that
-changes its own state or does not repeat its value, and a step that a user has written, which may do so.
+Fields on lattices, extended precision, events, and checkpoints, which go on bit for bit, stay with numpy. So do a psi
+that changes its own state or does not repeat its value, and a step that a user has written, which may do so.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from typing import Any, final
 import numpy as np
 
 from liehom.base.typing import Pytree
+from liehom.flow.action.field import GeneratorField
 from liehom.flow.action.fingerprint import Watch
 from liehom.flow.engines.engine import NumpyEngine, Problem, executed
 from liehom.flow.engines.llvm_engine import CodeStore, CompiledRun, LlvmEngine
@@ -36,6 +37,7 @@ MANY_NUMPY_STEPS = 128  # the same for more than FEW trajectories, which only ma
 FEW = 8  # trajectories, at most, that Python makes faster than numpy, one after the other
 PYTHON_STEPS = 2000  # steps of trajectories in Python before machine code is made
 STEPS_OF_A_CALL = 100  # steps in Python that cost as much as a call
+PLAIN = ("liehom.flow.methods.", "liehom.flow.steps.")  # modules with steps that are functions of point, time and size
 STEPS_AT_ONCE = 500  # between two looks at these numbers
 
 
@@ -46,16 +48,16 @@ class AutoEngine:
     name = "auto"
 
     def __init__(self) -> None:
-        self._begin(None)
+        self._begin()
 
-    def _begin(self, watch: Watch | None) -> None:
-        """Forget all code but that for the psi of a watch."""
-        self._watch = watch
+    def _begin(self) -> None:
+        """Forget all code."""
+        self._watch: Watch | None = None
         self.made = {"numpy": 0, "python": 0}  # steps
         self.refused = set[type[Kernel]]() if find_spec("llvmlite") else {Kernel}
         python = CodeStore(PythonKernel)
         self.stores = {PythonKernel: python, Kernel: CodeStore(Kernel, python.graphs)}
-        self._machine = LlvmEngine(self.stores[Kernel], watch)
+        self._machine = LlvmEngine()
 
     def __reduce__(self) -> tuple[type[AutoEngine], tuple[()]]:
         return type(self), ()  # code belongs to a process
@@ -64,16 +66,21 @@ class AutoEngine:
         """The solution of a problem."""
         if not _is_compiled(problem):
             return NumpyEngine().solve(problem)
-        if self._watch is None or self._watch.changed():
-            self._begin(watch := Watch(problem.bound, problem.start, problem.span[0]))
-        else:
-            watch = self._watch
-        if not watch.steady:
-            return NumpyEngine().solve(problem)
+        if self._watch is not None and self._watch.changed():
+            self._begin()
         if self.stores[Kernel].kernels and self.kind(int(np.prod(np.shape(problem.start)[:-1], dtype=int))) is Kernel:
             return self._machine.solve(problem)
         self.made["python"] += STEPS_OF_A_CALL
-        return executed(problem, lambda run: _Ladder(run, self))
+        return executed(problem, lambda run: _Ladder(run, problem, self))
+
+    def repeats(self, problem: Problem) -> bool:
+        """Whether psi is a function of its arguments alone, as far as can be seen; it is watched from now on."""
+        if self._watch is None:
+            self._watch = watch = Watch(problem.bound, problem.start, problem.span[0])
+            self._machine = LlvmEngine(self.stores[Kernel], watch)
+            if not (watch.steady and _repeats(problem.bound, problem.start.shape[-1])):
+                self.refused |= self.stores.keys()
+        return not self.refused >= self.stores.keys()
 
     def again(self, t_span: object, y0: object, options: Mapping[str, Any], args: Pytree = None) -> Solution | None:
         """The solution of a call like one before, by machine code; None if it needs a closer look."""
@@ -92,8 +99,8 @@ class AutoEngine:
 class _Ladder:
     """The steps of a run, by the code that pays."""
 
-    def __init__(self, run: Run, engine: AutoEngine) -> None:
-        self._engine, self._lanes = engine, int(np.prod(run.shape, dtype=int))
+    def __init__(self, run: Run, problem: Problem, engine: AutoEngine) -> None:
+        self._problem, self._engine, self._lanes = problem, engine, int(np.prod(run.shape, dtype=int))
         self._compiled: dict[type[Kernel], CompiledRun] = {}
 
     def __call__(self, run: Run) -> bool:
@@ -117,7 +124,7 @@ class _Ladder:
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")
-                if not store.graphs and not _repeats(run):
+                if not self._engine.repeats(self._problem):
                     return False
                 compiled = CompiledRun(run, store, most=STEPS_AT_ONCE)
                 for lanes, key, graph in compiled.groups:
@@ -140,18 +147,18 @@ def _is_compiled(problem: Problem) -> bool:
 
 
 def _is_ours(part: object) -> bool:
-    """Whether a step and those within it are of the library."""
+    """Whether a step and those within it are of the library, and without noise."""
     if isinstance(part, list | tuple):
         return all(map(_is_ours, part))
     parts = list(getattr(part, "__dict__", {}).values()) + [
         getattr(part, n, None) for n in getattr(part, "__slots__", ())
     ]
-    return not isinstance(part, Step) or (type(part).__module__.startswith("liehom.") and _is_ours(parts))
+    return not isinstance(part, Step) or (type(part).__module__.startswith(PLAIN) and _is_ours(parts))
 
 
-def _repeats(run: Run) -> bool:
+def _repeats(field: GeneratorField, n: int) -> bool:
     """Whether psi gives the same expressions when it is traced twice: not if it draws random numbers."""
-    tape, n = Tape(), run.start.shape[-1]
+    tape = Tape()
     m, t = Traced.inputs(tape, 0, n), Traced(tape, tape.input(n))
-    first, second = (Traced(tape, run.field.psi(m, t)).entries.tolist() for _ in range(2))
+    first, second = (Traced(tape, field.psi(m, t)).entries.tolist() for _ in range(2))
     return bool(first == second)

@@ -141,6 +141,7 @@ class CodeStore:
     def __init__(self, code: type[Kernel] = Kernel, graphs: dict[Hashable, StepGraph] | None = None) -> None:
         self.code = code
         self.graphs: dict[Hashable, StepGraph] = {} if graphs is None else graphs
+        self.works: dict[Hashable, int] = {}  # operations of a step
         self.kernels: dict[Hashable, Kernel] = {}
         self.schedules: dict[RunSchedule, Schedule] = {}
 
@@ -167,6 +168,8 @@ class CodeStore:
             if graph.reached is None and graph.elapsed is not None:
                 graph = traced(stops=True)
             self.graphs[key] = with_guard(graph, run.action, dimension)
+        if key not in self.works:
+            self.works[key] = operations(self.graphs[key])
         return key, self.graphs[key]
 
     def kernel(self, key: Hashable, graph: StepGraph, lanes: int) -> Kernel:
@@ -203,7 +206,7 @@ class CompiledRun:
         for d in np.unique(dimensions):
             lanes = np.flatnonzero(dimensions == d)
             self.groups.append((lanes, *store.graph(run, int(d), self.start[lanes])))
-        self.work = max((operations(graph) for _, _, graph in self.groups), default=1)
+        self.work = max((store.works[key] for _, key, _ in self.groups), default=1)
         self.schedule = store.schedule(run) if self.groups and self.groups[0][2].reached is None else None
         latest = bounds_of((float(run.span[0]), float(run.span[1])))[1]
         self.values: dict[str, Any] = {**arg_values(run.field.args, len(run.shape)), **run.limits._asdict()}

@@ -374,7 +374,7 @@ FIXED_POINT_ITERATIONS = 200
 NEWTON_ITERATIONS = 30
 JAX_ITERATIONS = 60
 ALONG = 1e-6  # longer steps, in units of the reach, must go along the pseudo-transient: arrays compare eigenvalues
-MAX_TRACED = 12
+MAX_TRACED = 18
 """Largest number of unknowns for which the elimination is traced; larger systems iterate the fixed point only."""
 EPS = float(np.finfo(np.float64).eps)
 
