@@ -19,7 +19,8 @@ from typing import Any, final
 
 import numpy as np
 
-from liehom.base.typing import Pytree
+from liehom.base.errors import TraceError
+from liehom.base.typing import Pytree, Values
 from liehom.flow.action.field import GeneratorField
 from liehom.flow.action.fingerprint import Watch
 from liehom.flow.engines.engine import NumpyEngine, Problem, executed
@@ -32,10 +33,11 @@ from liehom.flow.tracing.graph import Tape
 from liehom.flow.tracing.machine import Kernel
 from liehom.flow.tracing.python_kernel import PythonKernel
 
-NUMPY_STEPS = 32  # steps of numpy before a step is traced
-MANY_NUMPY_STEPS = 128  # the same for more than FEW trajectories, which only machine code makes faster
 FEW = 8  # trajectories, at most, that Python makes faster than numpy, one after the other
-PYTHON_STEPS = 2000  # steps of trajectories in Python before machine code is made
+# Numbers of steps, and what is added to them for each entry of the matrices of an action, in which traces grow.
+NUMPY_STEPS = 32, 0.5  # of numpy before a step is traced
+MANY_NUMPY_STEPS = 128, 4.0  # the same for more than FEW trajectories, which only machine code makes faster
+PYTHON_STEPS = 2000, 10.0  # of trajectories in Python before machine code is made
 STEPS_OF_A_CALL = 100  # steps in Python that cost as much as a call
 PLAIN = ("liehom.flow.methods.", "liehom.flow.steps.")  # modules with steps that are functions of point, time and size
 STEPS_AT_ONCE = 500  # between two looks at these numbers
@@ -48,6 +50,7 @@ class AutoEngine:
     name = "auto"
 
     def __init__(self) -> None:
+        self._generators = 0
         self._begin()
 
     def _begin(self) -> None:
@@ -66,12 +69,16 @@ class AutoEngine:
         """The solution of a problem."""
         if not _is_compiled(problem):
             return NumpyEngine().solve(problem)
+        self._generators = problem.action.dimension
         if self._watch is not None and self._watch.changed():
             self._begin()
-        if self.stores[Kernel].kernels and self.kind(int(np.prod(np.shape(problem.start)[:-1], dtype=int))) is Kernel:
-            return self._machine.solve(problem)
+        if self.stores[Kernel].kernels and self.kind(problem.start) is Kernel:
+            try:
+                return self._machine.solve(problem)
+            except TraceError:  # another kind of call than those before
+                self.refused.add(Kernel)
         self.made["python"] += STEPS_OF_A_CALL
-        return executed(problem, lambda run: _Ladder(run, problem, self))
+        return executed(problem, lambda _: _Ladder(problem, self))
 
     def repeats(self, problem: Problem) -> bool:
         """Whether psi is a function of its arguments alone, as far as can be seen; it is watched from now on."""
@@ -86,12 +93,17 @@ class AutoEngine:
         """The solution of a call like one before, by machine code; None if it needs a closer look."""
         return self._machine.again(t_span, y0, options, args)
 
-    def kind(self, lanes: int) -> type[Kernel] | None:
-        """What code to make for a number of trajectories; None as long as numpy makes their steps."""
-        few = lanes <= FEW
-        if self.made["numpy"] < (NUMPY_STEPS if few else MANY_NUMPY_STEPS):
+    def kind(self, start: Values) -> type[Kernel] | None:
+        """What code to make for initial points (..., N); None as long as numpy makes their steps."""
+        *lead, n = np.shape(start)
+        few, size = int(np.prod(lead, dtype=int)) <= FEW, n * self._generators
+
+        def is_paid(what: str, price: tuple[int, float]) -> bool:
+            return self.made[what] >= price[0] + price[1] * size
+
+        if not is_paid("numpy", NUMPY_STEPS if few else MANY_NUMPY_STEPS):
             return None
-        wanted = [Kernel] if not few or self.made["python"] >= PYTHON_STEPS else []
+        wanted = [Kernel] if not few or is_paid("python", PYTHON_STEPS) else []
         return next((kind for kind in [*wanted, *[PythonKernel] * few] if kind not in self.refused), None)
 
 
@@ -99,14 +111,14 @@ class AutoEngine:
 class _Ladder:
     """The steps of a run, by the code that pays."""
 
-    def __init__(self, run: Run, problem: Problem, engine: AutoEngine) -> None:
-        self._problem, self._engine, self._lanes = problem, engine, int(np.prod(run.shape, dtype=int))
+    def __init__(self, problem: Problem, engine: AutoEngine) -> None:
+        self._problem, self._engine = problem, engine
         self._compiled: dict[type[Kernel], CompiledRun] = {}
 
     def __call__(self, run: Run) -> bool:
         """Make steps; whether there are more to be made."""
         engine = self._engine
-        while (kind := engine.kind(self._lanes)) is not None:
+        while (kind := engine.kind(run.start)) is not None:
             if kind not in self._compiled and not self._begin(run, kind):
                 engine.refused.add(kind)
                 continue

@@ -530,7 +530,7 @@ def solve_implicitly(
     Notes
     -----
     A function that does not run on Jets, because it compares values, is differentiated by differences. The derivative
-    has no influence on the solution. In compiled code, systems with more than 12 unknowns iterate the fixed point only,
+    has no influence on the solution. In compiled code, systems with more than 18 unknowns iterate the fixed point only,
     and numpy makes the other steps.
 
     Examples

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any, TypeAlias, final
 
 import numpy as np
@@ -16,20 +16,12 @@ import numpy.typing as npt
 
 from liehom.base.errors import TraceError
 from liehom.flow.tracing.graph import FOLDED, OPERATORS, Expr, needed
-from liehom.flow.tracing.llvm_text import (
-    LEVELS,
-    LIBM,
-    LONG_SERIES_REACH,
-    MAX_NORM,
-    rotation_series,
-)
+from liehom.flow.tracing.llvm_text import LEVELS, LIBM, LONG_SERIES_REACH, MAX_NORM, rotation_series
 from liehom.flow.tracing.machine import Kernel
 from liehom.flow.tracing.run_text import DONE, FAILED, Constant
 
 Numbers: TypeAlias = Sequence[Any]
 """Python's floats and booleans."""
-Function: TypeAlias = Callable[..., Numbers]
-"""A function that was written: from numbers to a tuple of numbers."""
 
 SIGNS = {"add": "+", "sub": "-", "mul": "*", "div": "/", "lt": "<", "le": "<=", "eq": "==", "ne": "!=", "and": " and "}
 DEEPEST = 20  # operations in one statement, one within the other
@@ -59,9 +51,8 @@ class _Text:
 
     def compiled(self) -> tuple[dict[str, Any], dict[str, Any]]:
         """The functions by name, on Python's floats and on numpy's numbers."""
-        code = compile(
-            "\n".join([*self._functions.values(), _rotation("sinq"), _rotation("cosq"), *self.lines]), "", "exec"
-        )
+        texts = [*self._functions.values(), _rotation("sinq"), _rotation("cosq"), *self.lines]
+        code = compile("\n".join(texts), "a step of liehom", "exec")
         spaces = _spaces()
         for space in spaces:
             exec(code, space)
@@ -130,9 +121,8 @@ class _Text:
         self._texts |= {v.index: (name, 0) for v, name in zip(loop.variables, names, strict=True)}
         starts = ", ".join(self._text(a) for a in x.args[: len(names)])
         self.lines.append(f"{indent}{', '.join(names)},={starts},")
-        self.lines.append(
-            f"{indent}for _ in range({loop.limit if not loop.guarded else f'{loop.limit} if {names[0]} else 0'}):"
-        )
+        limit = f"{loop.limit} if {names[0]} else 0" if loop.guarded else f"{loop.limit}"
+        self.lines.append(f"{indent}for _ in range({limit}):")
         self._write(loop.inside, indent + " ")
         new, again = [self._text(y) for y in loop.new], self._text(loop.again)
         last = f"again{x.index}"
@@ -142,14 +132,10 @@ class _Text:
     def _exponential(self, places: Sequence[tuple[int, int]], n: int) -> str:
         """The name of the function (A, m) -> exp(A) m for the places of the entries of A, by its Taylor polynomial."""
         name = "exponential_" + "_".join(f"{i}_{j}" for i, j in places) + f"_{n}"
-        entries, point, sums = (
-            [f"a{p}" for p in range(len(places))],
-            [f"v{i}" for i in range(n)],
-            [f"s{i}" for i in range(n)],
-        )
-        rows = [
-            "+".join(f"{a}*{sums[j]}" for a, (k, j) in zip(entries, places, strict=True) if k == i) for i in range(n)
-        ]
+        entries = [f"a{p}" for p in range(len(places))]
+        point, sums = ([f"{letter}{i}" for i in range(n)] for letter in "vs")
+        products = [(i, f"{a}*{sums[j]}") for a, (i, j) in zip(entries, places, strict=True)]
+        rows = ["+".join(text for k, text in products if k == i) for i in range(n)]
         terms = [f"{v}+({row})/k" if row else v for v, row in zip(point, rows, strict=True)]
         joined = [", ".join(x) for x in (entries, point, sums, terms)]
         self._functions[name] = f"""\
@@ -277,19 +263,14 @@ class PythonKernel(Kernel):
 
     def _by_itself(self, row: dict[str, float], given: list[float], lane: int, fields: dict[str, Any]) -> None:
         """Steps of a lane with its own sizes and times."""
-        n, stops, out, path, last = (
-            self.graph.size,
-            fields["stops"].tolist(),
-            fields["out"],
-            fields["path"],
-            fields["last_stop"],
-        )
+        n, stops, last = self.graph.size, fields["stops"].tolist(), fields["last_stop"]
+        out, path, begin = fields["out"], fields["path"], fields["begin"]
         point: Numbers = list(row.values())[:n]
         time, size, stop = row["t"], row["h"], int(row["stop"])
         if size == math.inf:
             size = self._called("first", *point, time, *given)[0]
         adapted, counted = self.graph.sizes is not None, self.graph.elapsed is None
-        for k in range(fields["begin"], fields["end"]):
+        for k in range(begin, fields["end"]):
             new = self._called("step", *point, time, size, stops[stop], *given)
             total, (elapsed, ordinary, accepted, proposal, tried, reached) = sum(new[:n]), new[n : n + 6]
             if not (ordinary and total - total == 0):
@@ -310,7 +291,7 @@ class PythonKernel(Kernel):
                 point = new[:n]
                 time = stops[stop] if ends else fields["origin"] + row["count"] * size if counted else time + elapsed
                 if path is not None:
-                    path[k - fields["begin"], :, lane] = *point, time, tried if self.graph.tried is not None else size
+                    path[k - begin, :, lane] = *point, time, tried if self.graph.tried is not None else size
                 if adapted:
                     row["kept"] = stop
             else:

@@ -149,3 +149,14 @@ def test_jax_differentiates_a_stiff_step() -> None:
     e = 1e-6
     wanted = [(last(START + e * d) - last(START - e * d)) / (2 * e) for d in np.eye(3)]
     np.testing.assert_allclose(found, np.array(wanted).T, rtol=0, atol=1e-8)
+
+
+def test_eighteen_unknowns_are_solved_in_the_kernel() -> None:
+    """radau5 on S^3, a stiff field: no step is left to numpy."""
+    rho = lh.defining(lh.so(4))
+    matrices, goal = np.array([a.to_numpy() for a in rho.matrices]), np.array([1.0, 0.0, 0.0, 0.0])
+    field = lh.GeneratorField(rho, lambda m: 1e3 * np.einsum("aij,...j,i->...a", matrices, m, goal))
+    options: dict[str, Any] = {"step": lh.methods.StiffRKMK("radau5"), "rtol": 1e-4, "t_eval": [1.0]}
+    plain, made = both(field, (0, 1), [0.6, 0.0, 0.48, 0.64], **options)
+    assert made.report.engine == "llvm" and np.array_equal(made.n_steps, plain.n_steps)
+    assert np.abs(made.y - plain.y).max() < 1e-11
