@@ -209,20 +209,21 @@ class PythonKernel(Kernel):
     def _called(self, name: str, *args: float) -> Numbers:
         """The values of a function; by numpy where Python has no number."""
         try:
-            return self._spaces[0][name](*args)  # type: ignore[no-any-return]
+            return self._spaces[0][name](*args)
         except (ArithmeticError, ValueError):
             values: list[float] = np.array(self._spaces[1][name](*map(np.float64, args)), dtype=np.float64).tolist()
             return values
 
     def __call__(self, state: npt.NDArray[np.float64], **fields: npt.NDArray[Any] | float | None) -> None:
-        for lane in range(fields.get("first", 0), fields.get("last", state.shape[1])):
+        known: dict[str, Any] = {"first": 0, "last": state.shape[1], **fields}
+        for lane in range(known["first"], known["last"]):
             row = dict(zip(self.names, state[:, lane].tolist(), strict=True))
-            start: list[float] = fields["start"][: self.graph.size, lane].tolist()
-            given = self._given(start, lane, fields)
+            start: list[float] = known["start"][: self.graph.size, lane].tolist()
+            given = self._given(start, lane, known)
             if not self._called("begin", *start, *given)[-1]:
                 row["alive"] = FAILED
             elif row["alive"] > 0:
-                (self._in_lockstep if self.graph.reached is None else self._by_itself)(row, given, lane, fields)
+                (self._in_lockstep if self.graph.reached is None else self._by_itself)(row, given, lane, known)
             state[:, lane] = list(row.values())
 
     def _given(self, start: list[float], lane: int, fields: dict[str, Any]) -> list[float]:
