@@ -62,7 +62,7 @@ ORDER: dict[str, list[str]] = {
         "liehom.flow.convergence": "reference orders costs",
         "liehom.flow.engines": (
             "engine arguments traced_step lanes compiled_events jax_kernel jax_loops jax_engine lattice plan "
-            "llvm_engine sensitivity"
+            "llvm_engine auto_engine sensitivity"
         ),
         "liehom.flow.methods": "midpoint composition runge_kutta tableaux rkmk low_order stiff stability taylor named",
         "liehom.flow.propagation": "propagator integration ensemble",
@@ -72,7 +72,7 @@ ORDER: dict[str, list[str]] = {
             "implicit range_solver step expansion corrected curvature first_integral conserving symbolic_problem "
             "formulas order_conditions"
         ),
-        "liehom.flow.tracing": "graph array llvm_text loop run_text machine lattice sweeps",
+        "liehom.flow.tracing": "graph array llvm_text loop run_text machine python_kernel lattice sweeps",
         "liehom.io": "json_reader object_files files other_programs renderings page solution_file",
         "liehom.plotting": "canvas error_plot phase_plot diagram_plot strata_plot trajectory_plot drift_plot",
         "liehom.studies": "atlas isospectral spheres rigid_body_updates rigid_body instances paper",

@@ -741,7 +741,7 @@ class LandauLifshitz:
             self._check_together(step, dt, options)
         span = tuple(t_span)
         if self.temperature:
-            if options.get("engine", "numpy") not in (("numpy", "llvm") if self.coupled else ("numpy",)):
+            if options.get("engine", "auto") not in (("auto", "numpy", "llvm") if self.coupled else ("auto", "numpy")):
                 raise InputError("noise is compiled by engine='llvm' for coupled spins only: take engine='numpy'")
             step = self._thermal(step, dt, span, spins.shape, seed)
         elif seed is not None:

@@ -285,7 +285,10 @@ class Watch(Parts):
             self._read = lambda: np.asarray(function(m, time)).tobytes()
         self._known = self._value()
         self._known = self._known if self._value() == self._known else None  # a value that varies says nothing
-        self._rows = [row for row in self._rows if not _has_changed(*row)]  # the others are the state of psi
+        rows = self._rows
+        self._rows = [row for row in rows if not _has_changed(*row)]  # the others are the state of psi
+        # whether psi keeps no state and repeats its value, as far as can be seen
+        self.steady: bool = self._known is not None and len(self._rows) == len(rows)
 
     def changed(self) -> bool:
         """Whether the code of psi, what it names, or its value at the initial point is another one than before."""

@@ -169,7 +169,7 @@ def _report(problem: Problem, dimension: int) -> Report:
         base_order=step.base_order, order=step.order, wanted_order=step.order, worst_residual=float("nan"),
         singular_value=float("nan"), singular_at=None, rank=dimension, orbit_dimension=dimension, failed_steps=0,
         equilibria=0, inner_product=problem.action.inner_product.name,
-        check=problem.options.check(problem.field.time_dependent),
+        check=problem.options.check(problem.field.time_dependent), engine="jax",
     )  # fmt: skip
 
 

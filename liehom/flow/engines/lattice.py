@@ -244,6 +244,7 @@ class LatticePath:
         steps = min(int(limit) - taken, 1 if run.keeps else self._per_call)
         if steps < 1 or int(np.min(now.taken)) != taken:
             return False
+        run.engines["llvm"] = None
         begin = wall.perf_counter()
         sites = self.step.kernel.layout.sites
         points = np.empty(run.start.shape)

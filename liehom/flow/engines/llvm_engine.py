@@ -56,11 +56,11 @@ class LlvmEngine:
 
     name = "llvm"
 
-    def __init__(self) -> None:
-        self._store = CodeStore()
+    def __init__(self, store: CodeStore | None = None, watch: Watch | None = None) -> None:
+        self._store = CodeStore() if store is None else store
         self._plans: dict[Hashable, Plan] = {}
         self._lattice: LatticeStep | None = None
-        self._watch: Watch | None = None
+        self._watch = watch  # of the psi from which the store was made
 
     def __reduce__(self) -> tuple[type[LlvmEngine], tuple[()]]:
         return type(self), ()  # machine code belongs to a process
@@ -77,10 +77,10 @@ class LlvmEngine:
             solution = solved_on_lattice(problem, step)
             self._lattice = step
             return solution
-        runs: list[_CompiledRun] = []
+        runs: list[CompiledRun] = []
 
         def fast_path(run: Run) -> Callable[[Run], bool]:
-            runs.append(_CompiledRun(problem, run, self._store))
+            runs.append(CompiledRun(problem, run, self._store))
             return runs[0]
 
         solution = executed(problem, fast_path)
@@ -101,7 +101,7 @@ class LlvmEngine:
         except (TypeError, ValueError, OverflowError):  # not numbers, or not hashable
             return None
 
-    def _keep_plan(self, problem: Problem, run: _CompiledRun, solution: Solution) -> None:
+    def _keep_plan(self, problem: Problem, run: CompiledRun, solution: Solution) -> None:
         """Keep the plan of a call, if the trace serves all points, and nothing happens between its steps."""
         o, (_, key, graph) = problem.options, run.groups[0]
         if len(run.groups) > 1 or graph.guard is None or solution.status != END:
@@ -127,10 +127,12 @@ class LlvmEngine:
 
 @final
 class CodeStore:
-    """Traces and machine code for one field, step, exponential and clock."""
+    """Traces and code of a kind for one field, step, exponential and clock."""
 
-    def __init__(self) -> None:
-        self.graphs: dict[Hashable, StepGraph] = {}
+    def __init__(self, code: type[Kernel] = Kernel, graphs: dict[Hashable, StepGraph] | None = None) -> None:
+        self.code = code
+        self.graphs: dict[Hashable, StepGraph] = {} if graphs is None else graphs
+        self.works: dict[Hashable, int] = {}  # operations of a step
         self.kernels: dict[Hashable, Kernel] = {}
 
     def graph(self, run: Run, dimension: int, points: Array) -> tuple[Hashable, StepGraph]:
@@ -155,26 +157,28 @@ class CodeStore:
             if graph.reached is None and graph.elapsed is not None:
                 graph = traced(stops=True)
             self.graphs[key] = with_guard(graph, run.action, dimension)
+        if key not in self.works:
+            self.works[key] = operations(self.graphs[key])
         return key, self.graphs[key]
 
     def kernel(self, key: Hashable, graph: StepGraph, lanes: int) -> Kernel:
         """The machine code of a graph, in blocks for this number of lanes."""
-        width = block_width(graph, lanes)
+        width = block_width(graph, lanes) if self.code is Kernel else 1
         if (key, width) not in self.kernels:
-            self.kernels[key, width] = Kernel(graph, width)
+            self.kernels[key, width] = self.code(graph, width)
         return self.kernels[key, width]
 
 
 @final
-class _CompiledRun:
-    """Steps of a run by machine code; the number of steps in one call has no effect on the results."""
+class CompiledRun:
+    """Steps of a run by code of a kind; the number of steps in one call has no effect on the results."""
 
-    def __init__(self, problem: Problem, run: Run, store: CodeStore) -> None:
+    def __init__(self, problem: Problem, run: Run, store: CodeStore, most: int | None = None) -> None:
         if run.dtype != np.float64:
             raise InputError(
                 f"engine='llvm' computes in float64, the start is of type {run.dtype}: take engine='numpy'"
             )
-        self.store = store
+        self.store, self.most = store, most  # steps of a call
         self.search = None if run.stops.events is None else EventSearch(run)
         self.start = run.start.reshape(-1, run.start.shape[-1]).astype(np.float64)
         dimensions = np.broadcast_to(np.asarray(run.psi.orbit_dimension), run.shape).reshape(-1)
@@ -182,7 +186,7 @@ class _CompiledRun:
         for d in np.unique(dimensions):
             lanes = np.flatnonzero(dimensions == d)
             self.groups.append((lanes, *store.graph(run, int(d), self.start[lanes])))
-        self.work = max((operations(graph) for _, _, graph in self.groups), default=1)
+        self.work = max((store.works[key] for _, key, _ in self.groups), default=1)
         self.total = int(np.max(np.asarray(0 if run.stops.total is None else run.stops.total), initial=0))
         latest = bounds_of((float(run.span[0]), float(run.span[1])))[1]
         self.values: dict[str, Any] = {**arg_values(run.field.args, len(run.shape)), **run.limits._asdict()}
@@ -200,8 +204,10 @@ class _CompiledRun:
         steps = steps_per_call(run, self.work, 1 if self.search is None else COPIES_WITH_EVENTS)
         if self.search is not None and self.search.ends_runs:
             steps = min(steps, max(MIN_STEPS_WITH_ENDS, int(np.max(now.taken))))
+        steps = steps if self.most is None else min(steps, self.most)
         if steps < 1:
             return False
+        run.engines[self.store.code.engine] = None
         back = HandBack(run)
         for members, key, graph in self.groups:
             here = members[active[members]]

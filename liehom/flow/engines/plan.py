@@ -456,7 +456,9 @@ class Plan:
         steps = row["count"].astype(int)
         check = replace(p.options, looks=call.looks).check(p.field.time_dependent)
         direction = 1.0 if call.end > call.begin else -1.0
-        report = statistics.report(p.action, p.options.clock, p.orbit_dimension, direction, check=check)
+        report = statistics.report(
+            p.action, p.options.clock, p.orbit_dimension, direction, check=check, engine=self.kernel.engine
+        )
 
         def dense() -> DenseSolution:
             t, y, sizes = path  # type: ignore[misc]

@@ -83,6 +83,7 @@ def merged_report(reports: Sequence[Report], direction: float = 1.0) -> Report:
         near_steps=sum(report.near_steps for report in reports),
         looks=sum(report.looks for report in reports),
         cuts=sum(report.cuts for report in reports),
+        engine=", ".join(dict.fromkeys(name for report in reports for name in report.engine.split(", ") if name)),
         unkept_from=_earliest([report.unkept_from for report in reports], direction),
         stopped_at=_earliest([report.stopped_at for report in reports], direction),
         conservation=_conserved(conserved) if conserved else None,

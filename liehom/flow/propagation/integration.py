@@ -26,7 +26,7 @@ def integrate(
     args: Pytree = None,
     exponential: ExponentialLike = "exp",
     clock: str = "corrected",
-    engine: str | Engine = "numpy",
+    engine: str | Engine = "auto",
     **options: Unpack[CallOptions],
 ) -> Solution:
     """Trajectories of m' = rho(psi(m, t)) m, a `Solution` that stays on the orbit of the initial point.
@@ -83,8 +83,11 @@ def integrate(
         error ends the run. A run that finds it continues from it, bit for bit, and deletes it at the end.
     checkpoint_every : float
         Seconds between two checkpoints.
-    engine : "numpy", "llvm", "jax" or Engine
-        What makes the steps: numpy, or machine code of the step (extra ``llvm`` or ``jax``).
+    engine : "auto", "numpy", "llvm", "jax" or Engine
+        What makes the steps: numpy, or machine code of the step (extra ``llvm`` or ``jax``). "auto" begins with numpy.
+        For long runs it goes on by Python code of the traced step, and by machine code if llvmlite is installed;
+        `report` says by which. Events, checkpoints, lattices, extended precision, steps of users, and a psi that has a
+        state or cannot be traced stay with numpy. Name an engine for results that are the same bit for bit.
 
     Returns
     -------

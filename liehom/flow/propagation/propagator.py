@@ -38,6 +38,7 @@ from liehom.flow.engines.arguments import (
     with_tight_frame,
     without_jax,
 )
+from liehom.flow.engines.auto_engine import AutoEngine
 from liehom.flow.engines.engine import Engine, NumpyEngine, Problem
 from liehom.flow.engines.jax_engine import JaxEngine
 from liehom.flow.engines.llvm_engine import LlvmEngine
@@ -55,7 +56,12 @@ from liehom.flow.steps.step import ExponentialLike, Generator, Step, StepLike, a
 
 # Engines by name.
 
-ENGINES: dict[str, Callable[[], Engine]] = {"numpy": NumpyEngine, "llvm": LlvmEngine, "jax": JaxEngine}
+ENGINES: dict[str, Callable[[], Engine]] = {
+    "auto": AutoEngine,
+    "numpy": NumpyEngine,
+    "llvm": LlvmEngine,
+    "jax": JaxEngine,
+}
 
 
 def engine_of(engine: str | Engine) -> Engine:
@@ -247,7 +253,7 @@ class Propagator:
         args: Pytree = None,
         exponential: ExponentialLike = "exp",
         clock: str = "corrected",
-        engine: str | Engine = "numpy",
+        engine: str | Engine = "auto",
     ) -> None:
         if not isinstance(field, GeneratorField):
             raise InputError(f"expected a GeneratorField, got {displayed(field)}: call liehom.GeneratorField(rho, psi)")

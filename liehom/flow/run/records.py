@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, final
 
 import numpy as np
@@ -139,6 +139,9 @@ class Report:
     looks, cuts : int
         Number of looks at psi within steps, and how often one made a size smaller, over all steps of all trajectories.
         0 for methods that ask psi at stages, and on JAX arrays, where they are not counted.
+    engine : str
+        What made the steps: "numpy", "python", "llvm", "jax", or several of them in order, as "numpy, llvm". Reports
+        that differ in this entry only are equal.
     range_condition : bool or None
         Whether every correction could be solved and no step came near the cone; None for steps without correction.
 
@@ -177,6 +180,7 @@ class Report:
     check: str = ""
     looks: int = 0
     cuts: int = 0
+    engine: str = field(default="", compare=False)
 
     @property
     def range_condition(self) -> bool | None:
@@ -341,6 +345,7 @@ class StepStatistics:
         direction: float = 1.0,
         stopped_at: float | None = None,
         check: str = "",
+        engine: str = "",
     ) -> Report:
         """The statistics as a `Report`."""
         from_times = direction * self._unkept_from
@@ -368,6 +373,7 @@ class StepStatistics:
             check=check,
             looks=self._count("looks"),
             cuts=self._count("cuts"),
+            engine=engine,
         )
 
     def _conservation(self) -> ConservationReport | None:

@@ -451,6 +451,7 @@ class Run(Automaton):
         total = None if options.dt is None else self._number_of_steps(options.dt)
         self.stops: Stops = Stops(span[1], total, events)
         self.fast_path: Callable[[Run], bool] | None = None  # makes steps; returns whether there are more to be made
+        self.engines: dict[str, None] = {}  # what has made steps, in order
         self.state: RunState = self._initial_state(start)
 
     def _initial_state(self, start: Array) -> RunState:
@@ -493,6 +494,7 @@ class Run(Automaton):
             try:
                 while state.active.any():
                     if self.fast_path is None or not self.fast_path(self):
+                        self.engines["numpy"] = None
                         self.advance(state, self.stops)
                     if path is not None:
                         snapshot = state.snapshot()
@@ -574,6 +576,7 @@ class Run(Automaton):
                 direction,
                 ended.stopped_at,
                 check=o.check(self.field.time_dependent),
+                engine=", ".join(self.engines),
             ),
             statuses=ended.statuses if self.shape else ended.status,
         )

@@ -374,7 +374,7 @@ FIXED_POINT_ITERATIONS = 200
 NEWTON_ITERATIONS = 30
 JAX_ITERATIONS = 60
 ALONG = 1e-6  # longer steps, in units of the reach, must go along the pseudo-transient: arrays compare eigenvalues
-MAX_TRACED = 12
+MAX_TRACED = 18
 """Largest number of unknowns for which the elimination is traced; larger systems iterate the fixed point only."""
 EPS = float(np.finfo(np.float64).eps)
 
@@ -530,7 +530,7 @@ def solve_implicitly(
     Notes
     -----
     A function that does not run on Jets, because it compares values, is differentiated by differences. The derivative
-    has no influence on the solution. In compiled code, systems with more than 12 unknowns iterate the fixed point only,
+    has no influence on the solution. In compiled code, systems with more than 18 unknowns iterate the fixed point only,
     and numpy makes the other steps.
 
     Examples

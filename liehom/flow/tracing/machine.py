@@ -9,11 +9,11 @@ import os
 import stat
 import sys
 import warnings
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import cache
 from pathlib import Path
 from types import ModuleType
-from typing import Any, TypeAlias, final
+from typing import Any, ClassVar, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -154,7 +154,6 @@ def _read(file: Path, key: str) -> bytes | None:
 PLACES = {name: place for place, name in enumerate(FIELDS)}
 
 
-@final
 class Kernel:
     """Machine code of a whole run of a traced step, for blocks of `width` lanes.
 
@@ -171,12 +170,18 @@ class Kernel:
         Whether the code was found in the cache.
     """
 
+    engine: ClassVar[str] = "llvm"  # as reports name it
+
     def __init__(self, graph: StepGraph, width: int) -> None:
         self.graph, self.width = graph, width
         self.names = state_names(graph)
         self.run_constants: list[str] = []
         self.lane_constants: list[TrajectoryConstant] = []
-        self.text = run_module(graph, [self._place(x) for x in graph.constant_functions], width)
+        self._build([self._place(x) for x in graph.constant_functions])
+
+    def _build(self, constants: Sequence[Constant]) -> None:
+        """Compile the run, for inputs -1, -2, ... that come from given places."""
+        self.text = run_module(self.graph, constants, self.width)
         self._engine, self.cached = engine_of(self.text)
         self.run: Any = ctypes.CFUNCTYPE(None, ctypes.c_void_p)(self._engine.get_function_address("run"))
 

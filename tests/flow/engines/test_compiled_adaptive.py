@@ -248,7 +248,7 @@ def test_a_least_step_size_does_not_lengthen_steps() -> None:
         np.testing.assert_array_equal(made.statuses, plain.statuses)
         np.testing.assert_array_equal(made.n_steps, plain.n_steps)
         np.testing.assert_allclose(made.y, plain.y, rtol=0, atol=1e-9)
-    plain = lh.integrate(BODY, (0, 3), START, step=STEPS["RK45"], dt=0.125, min_step=0.5)
+    plain = lh.integrate(BODY, (0, 3), START, step=STEPS["RK45"], dt=0.125, min_step=0.5, engine="numpy")
     assert plain.n_steps == 24
 
 

@@ -64,7 +64,7 @@ def test_an_iteration_that_fails_ends_as_on_arrays(backend: str) -> None:
     jump = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m: [0.0, 0.0, 1.0] * np.where(m[..., :1] > 0, 1.0, -3.0))
     y0 = np.array([[0.6, 0.48, 0.64], [0.0, 0.6, 0.8], [0.1, 0.6, np.sqrt(0.63)]])
     y0[1] = [-0.6, 0.48, 0.64]
-    plain = lh.integrate(jump, (0, 0.5), y0, step=lh.RKMK("implicit midpoint"), dt=0.1)
+    plain = lh.integrate(jump, (0, 0.5), y0, step=lh.RKMK("implicit midpoint"), dt=0.1, engine="numpy")
     made = lh.integrate(jump, (0, 0.5), y0, step=lh.RKMK("implicit midpoint"), dt=0.1, engine=backend)
     assert list(plain.statuses) == list(made.statuses) and set(plain.statuses) == {0, int(plain.statuses.min())}
     assert plain.statuses.min() < 0
@@ -74,7 +74,7 @@ def test_an_iteration_that_fails_ends_as_on_arrays(backend: str) -> None:
 def test_jax_agrees_and_differentiates() -> None:
     jax = pytest.importorskip("jax")
     step = lh.RKMK("implicit midpoint")
-    plain = lh.integrate(BODY, (0, 2), sphere(3), step=step, dt=0.1)
+    plain = lh.integrate(BODY, (0, 2), sphere(3), step=step, dt=0.1, engine="numpy")
     made = lh.integrate(BODY, (0, 2), sphere(3), step=step, dt=0.1, engine="jax")
     np.testing.assert_allclose(made.y, plain.y, rtol=0, atol=ULPS * EPS)
 
@@ -130,7 +130,7 @@ def test_newton_in_compiled_code_agrees_with_arrays(backend: str, name: str) -> 
     y0 = sphere(9)
     for rate in (10.0, 1000.0):  # two fields whose numbers appear inside loops only
         field = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m, k=rate: k * np.cross(m, [0.0, 0.0, 1.0]))
-        plain = lh.integrate(field, (0, 1), y0, step=lh.RKMK(name), dt=0.1, t_eval=[0.2, 1.0])
+        plain = lh.integrate(field, (0, 1), y0, step=lh.RKMK(name), dt=0.1, t_eval=[0.2, 1.0], engine="numpy")
         made = lh.integrate(field, (0, 1), y0, step=lh.RKMK(name), dt=0.1, t_eval=[0.2, 1.0], engine=backend)
         assert (plain.statuses == 0).all() and (made.statuses == 0).all()
         np.testing.assert_allclose(made.y, plain.y, rtol=0, atol=1e-13)
@@ -149,3 +149,14 @@ def test_jax_differentiates_a_stiff_step() -> None:
     e = 1e-6
     wanted = [(last(START + e * d) - last(START - e * d)) / (2 * e) for d in np.eye(3)]
     np.testing.assert_allclose(found, np.array(wanted).T, rtol=0, atol=1e-8)
+
+
+def test_eighteen_unknowns_are_solved_in_the_kernel() -> None:
+    """radau5 on S^3, a stiff field: no step is left to numpy."""
+    rho = lh.defining(lh.so(4))
+    matrices, goal = np.array([a.to_numpy() for a in rho.matrices]), np.array([1.0, 0.0, 0.0, 0.0])
+    field = lh.GeneratorField(rho, lambda m: 1e3 * np.einsum("aij,...j,i->...a", matrices, m, goal))
+    options: dict[str, Any] = {"step": lh.methods.StiffRKMK("radau5"), "rtol": 1e-4, "t_eval": [1.0]}
+    plain, made = both(field, (0, 1), [0.6, 0.0, 0.48, 0.64], **options)
+    assert made.report.engine == "llvm" and np.array_equal(made.n_steps, plain.n_steps)
+    assert np.abs(made.y - plain.y).max() < 1e-11

@@ -20,7 +20,7 @@ START = np.array([0.36, 0.48, 0.8])
 @pytest.mark.parametrize("step", [lh.Euler(), lh.Corrected(lh.Euler(), 2)], ids=["Euler", "corrected"])
 def test_numpy_arrays_give_the_same_solution(step: Any) -> None:
     for options in ({}, {"t_eval": [0.55, 2.0]}):
-        plain = lh.integrate(BODY, (0, 2), sphere(3, 2), step=step, dt=0.1, **options)
+        plain = lh.integrate(BODY, (0, 2), sphere(3, 2), step=step, dt=0.1, **options, engine="numpy")
         made = lh.integrate(BODY, (0, 2), sphere(3, 2), step=step, dt=0.1, engine="jax", **options)
         np.testing.assert_allclose(made.y, plain.y, rtol=0, atol=64 * EPS)
         np.testing.assert_allclose(made.t, plain.t, rtol=0, atol=64 * EPS)
@@ -29,7 +29,7 @@ def test_numpy_arrays_give_the_same_solution(step: Any) -> None:
 
 def test_the_matrix_exponential_on_a_sphere_of_dimension_four() -> None:
     field = lh.GeneratorField(lh.defining(lh.so(5)), lambda m: np.ones(10) * m[..., :1])
-    plain = lh.integrate(field, (0, 1), np.eye(5), step=lh.Euler(), dt=0.1)
+    plain = lh.integrate(field, (0, 1), np.eye(5), step=lh.Euler(), dt=0.1, engine="numpy")
     made = lh.integrate(field, (0, 1), np.eye(5), step=lh.Euler(), dt=0.1, engine="jax")
     np.testing.assert_allclose(made.y, plain.y, rtol=0, atol=64 * EPS)
 
@@ -66,7 +66,7 @@ def test_vmap_is_an_ensemble() -> None:
     with jax.enable_x64(True):
         m = jax.numpy.asarray(sphere(4, 2))
         mapped, whole = jax.jit(jax.vmap(end))(m), end(m)
-    plain = lh.integrate(BODY, (0, 1), sphere(4, 2), step=lh.Euler(), dt=0.1, t_eval=[0.5, 1.0]).y
+    plain = lh.integrate(BODY, (0, 1), sphere(4, 2), step=lh.Euler(), dt=0.1, t_eval=[0.5, 1.0], engine="numpy").y
     np.testing.assert_allclose(np.asarray(mapped), plain, rtol=0, atol=64 * EPS)
     np.testing.assert_allclose(np.asarray(whole), plain, rtol=0, atol=64 * EPS)
 

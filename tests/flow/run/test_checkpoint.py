@@ -245,6 +245,7 @@ def test_a_process_that_is_killed(number: signal.Signals, tmp_path: Path) -> Non
         M0,
         step=lh.RKMK("rk4"),
         dt=0.05,
+        engine="numpy",
     )
     assert np.array_equal(np.load(path + ".y.npy"), whole.y) and not os.path.exists(path)
 

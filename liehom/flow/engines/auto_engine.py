@@ -1,0 +1,176 @@
+"""AutoEngine: steps by numpy at first, then by Python or machine code written from the trace, as soon as that pays.
+
+What was done before decides, by counts and not by the clock, so that a script gives the same numbers each time:
+
+* The first steps are those of numpy. A trace costs about as much as `NUMPY_STEPS` of them.
+* Then a few trajectories are stepped by straight-line Python (`PythonKernel`), if the step can be traced.
+* Then by machine code, if llvmlite can be imported, as soon as it would have been made for the work done so far.
+
+Fields on lattices, extended precision, events, and checkpoints, which go on bit for bit, stay with numpy. So do a psi
+that changes its own state or does not repeat its value, and a step that a user has written, which may do so.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Mapping
+from importlib.util import find_spec
+from typing import Any, final
+
+import numpy as np
+
+from liehom.base.errors import TraceError
+from liehom.base.typing import Pytree, Values
+from liehom.flow.action.field import GeneratorField
+from liehom.flow.action.fingerprint import Watch
+from liehom.flow.engines.engine import NumpyEngine, Problem, executed
+from liehom.flow.engines.llvm_engine import CodeStore, CompiledRun, LlvmEngine
+from liehom.flow.run.run import Run
+from liehom.flow.run.solution import Solution
+from liehom.flow.steps.step import Step
+from liehom.flow.tracing.array import Traced
+from liehom.flow.tracing.graph import Tape
+from liehom.flow.tracing.machine import Kernel
+from liehom.flow.tracing.python_kernel import PythonKernel
+
+FEW = 8  # trajectories, at most, that Python makes faster than numpy, one after the other
+# Numbers of steps, and what is added to them for each entry of the matrices of an action, in which traces grow.
+NUMPY_STEPS = 32, 0.5  # of numpy before a step is traced
+MANY_NUMPY_STEPS = 128, 4.0  # the same for more than FEW trajectories, which only machine code makes faster
+PYTHON_STEPS = 2000, 10.0  # of trajectories in Python before machine code is made
+STEPS_OF_A_CALL = 100  # steps in Python that cost as much as a call
+PLAIN = ("liehom.flow.methods.", "liehom.flow.steps.")  # modules with steps that are functions of point, time and size
+STEPS_AT_ONCE = 500  # between two looks at these numbers
+
+
+@final
+class AutoEngine:
+    """The engine "auto", the default: numpy, Python or machine code, whatever is quick for the calls that are made."""
+
+    name = "auto"
+
+    def __init__(self) -> None:
+        self._generators = 0
+        self._begin()
+
+    def _begin(self) -> None:
+        """Forget all code."""
+        self._watch: Watch | None = None
+        self.made = {"numpy": 0, "python": 0}  # steps
+        self.refused = set[type[Kernel]]() if find_spec("llvmlite") else {Kernel}
+        python = CodeStore(PythonKernel)
+        self.stores = {PythonKernel: python, Kernel: CodeStore(Kernel, python.graphs)}
+        self._machine = LlvmEngine()
+
+    def __reduce__(self) -> tuple[type[AutoEngine], tuple[()]]:
+        return type(self), ()  # code belongs to a process
+
+    def solve(self, problem: Problem) -> Solution:
+        """The solution of a problem."""
+        if not _is_compiled(problem):
+            return NumpyEngine().solve(problem)
+        self._generators = problem.action.dimension
+        if self._watch is not None and self._watch.changed():
+            self._begin()
+        if self.stores[Kernel].kernels and self.kind(problem.start) is Kernel:
+            try:
+                return self._machine.solve(problem)
+            except TraceError:  # another kind of call than those before
+                self.refused.add(Kernel)
+        self.made["python"] += STEPS_OF_A_CALL
+        return executed(problem, lambda _: _Ladder(problem, self))
+
+    def repeats(self, problem: Problem) -> bool:
+        """Whether psi is a function of its arguments alone, as far as can be seen; it is watched from now on."""
+        if self._watch is None:
+            self._watch = watch = Watch(problem.bound, problem.start, problem.span[0])
+            self._machine = LlvmEngine(self.stores[Kernel], watch)
+            if not (watch.steady and _repeats(problem.bound, problem.start.shape[-1])):
+                self.refused |= self.stores.keys()
+        return not self.refused >= self.stores.keys()
+
+    def again(self, t_span: object, y0: object, options: Mapping[str, Any], args: Pytree = None) -> Solution | None:
+        """The solution of a call like one before, by machine code; None if it needs a closer look."""
+        return self._machine.again(t_span, y0, options, args)
+
+    def kind(self, start: Values) -> type[Kernel] | None:
+        """What code to make for initial points (..., N); None as long as numpy makes their steps."""
+        *lead, n = np.shape(start)
+        few, size = int(np.prod(lead, dtype=int)) <= FEW, n * self._generators
+
+        def is_paid(what: str, price: tuple[int, float]) -> bool:
+            return self.made[what] >= price[0] + price[1] * size
+
+        if not is_paid("numpy", NUMPY_STEPS if few else MANY_NUMPY_STEPS):
+            return None
+        wanted = [Kernel] if not few or is_paid("python", PYTHON_STEPS) else []
+        return next((kind for kind in [*wanted, *[PythonKernel] * few] if kind not in self.refused), None)
+
+
+@final
+class _Ladder:
+    """The steps of a run, by the code that pays."""
+
+    def __init__(self, problem: Problem, engine: AutoEngine) -> None:
+        self._problem, self._engine = problem, engine
+        self._compiled: dict[type[Kernel], CompiledRun] = {}
+
+    def __call__(self, run: Run) -> bool:
+        """Make steps; whether there are more to be made."""
+        engine = self._engine
+        while (kind := engine.kind(run.start)) is not None:
+            if kind not in self._compiled and not self._begin(run, kind):
+                engine.refused.add(kind)
+                continue
+            taken = int(np.sum(run.state.taken))
+            more = self._compiled[kind](run)
+            if kind is PythonKernel:
+                engine.made["python"] += int(np.sum(run.state.taken)) - taken
+            return more
+        engine.made["numpy"] += 1
+        return False
+
+    def _begin(self, run: Run, kind: type[Kernel]) -> bool:
+        """Trace and write the code of a run, if that is possible; numpy makes the steps of all others."""
+        store = self._engine.stores[kind]
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                if not self._engine.repeats(self._problem):
+                    return False
+                compiled = CompiledRun(self._problem, run, store, most=STEPS_AT_ONCE)
+                for lanes, key, graph in compiled.groups:
+                    store.kernel(key, graph, len(lanes))
+        except Exception:  # noqa: BLE001 - of code of the user, which was not written for tracers
+            return False
+        self._compiled[kind] = compiled
+        return True
+
+
+def _is_compiled(problem: Problem) -> bool:
+    """Whether code may be written for a problem: nothing of the user's but psi takes part in the steps."""
+    return (
+        not problem.field.sites
+        and problem.options.checkpoint is None
+        and problem.options.events is None
+        and np.asarray(problem.start).dtype == np.float64
+        and _is_ours(problem.step)
+    )
+
+
+def _is_ours(part: object) -> bool:
+    """Whether a step and those within it are of the library, and without noise."""
+    if isinstance(part, list | tuple):
+        return all(map(_is_ours, part))
+    parts = list(getattr(part, "__dict__", {}).values()) + [
+        getattr(part, n, None) for n in getattr(part, "__slots__", ())
+    ]
+    return not isinstance(part, Step) or (type(part).__module__.startswith(PLAIN) and _is_ours(parts))
+
+
+def _repeats(field: GeneratorField, n: int) -> bool:
+    """Whether psi gives the same expressions when it is traced twice: not if it draws random numbers."""
+    tape = Tape()
+    m, t = Traced.inputs(tape, 0, n), Traced(tape, tape.input(n))
+    first, second = (Traced(tape, field.psi(m, t)).entries.tolist() for _ in range(2))
+    return bool(first == second)
