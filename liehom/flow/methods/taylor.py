@@ -10,7 +10,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass
-from math import ceil, log
+from math import ceil, log, log2
+from types import ModuleType
 from typing import Any, ClassVar, NamedTuple, final
 
 import numpy as np
@@ -20,7 +21,7 @@ from liehom.base.typing import Array, IntegerArray, Values
 from liehom.flow.action.exponential import TrueExponential
 from liehom.flow.action.quadrics import Quadrics, TightInverse, quadric_orbits, tight_inverse
 from liehom.flow.action.space import Action
-from liehom.flow.series.arrays import is_traced, namespace
+from liehom.flow.series.arrays import coarse, is_traced, namespace
 from liehom.flow.series.jet import Jet
 from liehom.flow.steps.corrected import least_generator
 from liehom.flow.steps.expansion import flow_series
@@ -30,11 +31,11 @@ from liehom.flow.steps.step import (
     LocalStep,
     Step,
     StepLimits,
-    length,
-    over_sites,
     polynomial,
+    squared_length,
 )
 from liehom.flow.tracing.array import Traced
+from liehom.flow.tracing.graph import LARGEST_EXPONENT
 
 MAGNUS_ORDER = 4  # order of Exp(xi) m for xi = M_0 - [M_0, M_1] and the true exponential
 SECOND_ORDER = 2  # the same for any other Exp, which agrees with the true one through order 2
@@ -153,42 +154,28 @@ class TaylorSeries(LocalStep):
 
     def size(self, limits: StepLimits) -> Array:
         """Largest size (...,) at which the last two terms, and those of the upper half of the orders as the last may
-        vanish, are within the error that is allowed, and at most a tenth of the length |X| h of the step.
+        vanish, are within the error that is allowed, and at most a tenth of the length |X| h of the step. With an error
+        of |m| theta^n a term of order k is at most `EVEN` |m| theta^k, k/n rounded down to eighths.
         """
-        n, xp = len(self.trajectory), namespace(limits.largest, limits.speed)
-        first = max(n // 2, 1)
-        terms = [over_sites(length(x), limits.axes) for x in self.trajectory[first - 1 :]]
-        before, last = terms[-2] if n > 1 else terms[-1], terms[-1]
-        way: Any = xp.where(limits.speed > 0, SERIES_FRACTION * limits.speed, np.inf)
-        a: Any = limits.allowed / last  # h^n is at most this
-        least, root = a, 1 / n
-        if n > 3:
-            # h^(n-1) and h^(n-2) are at most b and c; powers of quotients, which are sizes, do not overflow
-            b: Any = xp.minimum(limits.allowed / before, way / last)
-            c: Any = way / before
-            first_of_two = (a / b) ** (n - 1) < b
-            least, root = xp.where(first_of_two, a, b), xp.where(first_of_two, 1 / n, 1 / (n - 1))
-            third = ((a / c) ** (n - 2) > c * c) & ((b / c) ** (n - 2) > c)
-            least, root = xp.where(third, c, least), xp.where(third, 1 / (n - 2), root)
-        h: Any = xp.minimum(limits.largest, least**root)
-        return self._shortened(h, terms[:-2], first, limits)
-
-    def _shortened(self, h: Array, terms: Sequence[Array], first: int, limits: StepLimits) -> Array:
-        """The size, smaller if a term of an order k from `first` on is not small: with an error of |m| theta^n it may
-        be `EVEN` times |m| theta^k, that of a series that converges evenly, with k/n rounded down to eighths.
-        """
-        if not terms:
-            return h
-        n, xp = len(self.trajectory), namespace(h, limits.speed)
-        size: Any = over_sites(length(self.m), limits.axes)
-        eighth, worst = xp.sqrt(xp.sqrt(xp.sqrt(size / limits.allowed))), 1.0
-        unit, power = 1 / (EVEN * size), h**first
-        for k, term in enumerate(terms, first):
-            part = xp.where(term > 0, term * power * unit * eighth ** (8 * k // n), 0.0)
-            worst, power = xp.maximum(worst, part), power * h
-        while first > 1:  # a root of an order that is a power of 2 and at most `first`
-            worst, first = xp.sqrt(worst), first // 2
-        return h / worst
+        n, axes = len(self.trajectory), limits.axes
+        xp, first = namespace(limits.largest, limits.speed), max(n // 2, 1)
+        squares = [squared_length(x, axes) for x in self.trajectory[first - 1 :]]
+        error: Any = coarse("coarse_log2", limits.allowed)
+        way: Any = xp.where(limits.speed > 0, coarse("coarse_log2", SERIES_FRACTION * limits.speed), np.inf)
+        size: Any = 0.5 * coarse("coarse_log2", squared_length(self.m, axes))
+        # log2 h is at most the least of these, by |m_k| h^j <= bound; terms of high order come last, as they are known
+        least: Any = xp.where(limits.speed < np.inf, LARGEST_EXPONENT, np.nan)
+        for k, square in enumerate(squares, first):
+            log: Any = 0.5 * coarse("coarse_log2", square)
+            if k < n - 1:
+                share = 8 * k // n / 8
+                allows = (size * (1 - share) + (error * share + log2(EVEN)) - log) / k
+            else:
+                allows = (error - log) / k
+            if k >= n - 1 and n > 3:
+                allows = _lesser(xp, allows, (way - log) / (k - 1))
+            least = _lesser(xp, xp.where(square == 0, LARGEST_EXPONENT, allows), least)
+        return xp.minimum(limits.largest, coarse("coarse_exp2", least))
 
     def series(self, h: Values) -> Values:
         """m_0 + m_1 h + ... + m_n h^n for h of shape (..., 1), shape (..., N)."""
@@ -274,6 +261,11 @@ class LandedSeries(TaylorSeries):
             return lambda v: inverse.lifted(self.action, point, v, over)
         frame = self.action.isotropy_frame(point, self._dimension)
         return lambda v: least_generator(frame, v)
+
+
+def _lesser(xp: ModuleType, a: Array, b: Array) -> Array:
+    """The lesser of two numbers; b if one of them is NaN."""
+    return xp.where(a < b, a, b)  # type: ignore[no-any-return]
 
 
 def _finite(coefficients: list[Values]) -> list[Values]:

@@ -70,6 +70,16 @@ def length(x: Values) -> Array:
     return root
 
 
+def squared_length(x: Values, axes: int = 0) -> Array:
+    """Sum of squares over the last axis, in float64, and over the `axes` before it, the sites of a lattice."""
+    values = floats(x)
+    square: Array = (values * values).sum(axis=-1)
+    if not axes:
+        return square
+    xp = namespace(square)
+    return xp.broadcast_to(xp.sum(square, axis=tuple(range(-axes, 0)), keepdims=True), square.shape)
+
+
 def over_sites(x: Values, axes: int) -> Array:
     """Root of the sum of squares over the last axes, the sites of a lattice, repeated for each site."""
     if not axes:
