@@ -14,7 +14,7 @@ from liehom.base.typing import Array, IntegerArray, Pytree, Real, Values
 from liehom.flow.action.field import GeneratorField
 from liehom.flow.action.frames import tight_frame
 from liehom.flow.action.space import Action
-from liehom.flow.run.check import is_unbounded
+from liehom.flow.run.check import Seen, is_unbounded
 from liehom.flow.run.control import (
     ERROR_TERMS,
     MAX_RATE,
@@ -171,9 +171,10 @@ def _traced(
     psi, error_terms = Generator(_counted(tape, field), orbit_dimension), 0 if limits is None else ERROR_TERMS
     local = step.at(action, psi, m, t[..., None], error_terms=error_terms)
     certain: Any = True
+    seen = None
     if limits is not None:
         limits = _traced_limits(tape, limits)
-        size, certain, looks, cuts = tried_size(limits, action, psi, local, step.order, m, t, h, field)
+        size, certain, looks, cuts, seen = tried_size(limits, action, psi, local, step.order, m, t, h, field)
         h = limits.direction * size
     own_clock, first, reached = bool(local.clock) and not nominal, None, None
     passed = _number(tape, local.time(h) if own_clock else h) if own_clock or limits is not None else None
@@ -186,7 +187,7 @@ def _traced(
         h, reached, solvable = size_to_stop(local if own_clock else None, h, stop - t, bounds)
         tape.required.append(_number(tape, solvable))
     size = h[..., None]
-    moved: Any = local.point(size)
+    moved: Any = local.point(size) if seen is None or not local.looks_ahead else _moved(tape, local, h, seen)
     runs = None
     clock: tuple[tuple[int, Expr], ...] = ()
     if own_clock:
@@ -213,6 +214,17 @@ def _traced(
         tried=None if reached is None else _number(tape, h),
         first=None if first is None else _number(tape, first),
     )  # fmt: skip
+
+
+def _moved(tape: Tape, local: LocalStep, h: Values, seen: Seen) -> Values:
+    """The point after the step: where psi was looked at, or computed again in blocks with a lane that ends elsewhere."""
+    elsewhere: Any = h != seen.size
+
+    def again(elsewhere: Values, size: Values, point: Values) -> tuple[list[Values], Values]:
+        moved = np.where(elsewhere, local.point(size[..., None]), point)  # type: ignore[index]
+        return [elsewhere, size, moved], np.zeros((), bool)
+
+    return while_loop(again, [elsewhere, h, seen.point], tape, 1, guarded=True)[2]
 
 
 def _all_of(tape: Tape, conditions: Sequence[Expr]) -> Expr | None:

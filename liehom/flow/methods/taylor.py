@@ -175,7 +175,7 @@ class TaylorSeries(LocalStep):
             if k >= n - 1 and n > 3:
                 allows = _lesser(xp, allows, (way - log) / (k - 1))
             least = _lesser(xp, xp.where(square == 0, LARGEST_EXPONENT, allows), least)
-        return xp.minimum(limits.largest, coarse("coarse_exp2", least))
+        return _lesser(xp, limits.largest, coarse("coarse_exp2", least))
 
     def series(self, h: Values) -> Values:
         """m_0 + m_1 h + ... + m_n h^n for h of shape (..., 1), shape (..., N)."""
@@ -185,6 +185,8 @@ class TaylorSeries(LocalStep):
 @final
 class ProjectedSeries(TaylorSeries):
     """The Taylor polynomial, projected onto level sets of quadratic forms."""
+
+    looks_ahead = True
 
     def __init__(
         self, action: Action, m: Values, coefficients: Sequence[Values], quadrics: Quadrics, start: Values | None

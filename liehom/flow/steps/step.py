@@ -140,6 +140,8 @@ class LocalStep:
         The Taylor coefficients psi_0, psi_1, ... of the generator along it, if `quick`.
     quick : bool
         Whether `point` needs neither equations nor values of psi, so that points within the step are quickly computed.
+    looks_ahead : bool
+        Whether the point of `look` is `point` itself, which is then computed once.
     estimate_order : int or None
         k if `estimate` is O(h^k); None if there is no estimate.
     widest_gap : float
@@ -165,6 +167,7 @@ class LocalStep:
     trajectory: Sequence[Values] = ()
     velocity: Sequence[Values] = ()
     quick: bool = False
+    looks_ahead: bool = False
     estimate_order: int | None = None
     widest_gap: float = 1.0
     clock: tuple[tuple[int, Values], ...] = ()
