@@ -152,10 +152,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
             for lanes in (1, 1000):
                 for rtol in (1e-3, 1e-6, 1e-9, 1e-12):
                     error, spent, ratio = at_equal_error(case, lanes, rtol)
-                    print(
-                        f"{name:8} N {lanes:4} rtol {rtol:g}: error {error:.1e}, {spent:8.2f} us, {ratio:.2f} of the best fixed",
-                        flush=True,
-                    )
+                    text = f"error {error:.1e}, {spent:8.2f} us, {ratio:.2f} of the best fixed"
+                    print(f"{name:8} N {lanes:4} rtol {rtol:g}: {text}", flush=True)
             continue
         for order in chosen.orders:
             for lanes in LANES:

@@ -217,7 +217,7 @@ def _traced(
 
 
 def _moved(tape: Tape, local: LocalStep, h: Values, seen: Seen) -> Values:
-    """The point after the step: where psi was looked at, or computed again in blocks with a lane that ends elsewhere."""
+    """The point after the step, where psi was looked at; computed again in blocks with a lane that ends elsewhere."""
     elsewhere: Any = h != seen.size
 
     def again(elsewhere: Values, size: Values, point: Values) -> tuple[list[Values], Values]:

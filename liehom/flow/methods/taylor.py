@@ -19,12 +19,14 @@ import numpy as np
 from liehom.base.errors import InputError
 from liehom.base.typing import Array, IntegerArray, Values
 from liehom.flow.action.exponential import TrueExponential
+from liehom.flow.action.field import GeneratorField
 from liehom.flow.action.quadrics import Quadrics, TightInverse, quadric_orbits, tight_inverse
 from liehom.flow.action.space import Action
 from liehom.flow.series.arrays import coarse, is_traced, namespace
 from liehom.flow.series.jet import Jet
+from liehom.flow.series.quadratic import AffineFlow, affine_flow
 from liehom.flow.steps.corrected import least_generator
-from liehom.flow.steps.expansion import flow_series
+from liehom.flow.steps.expansion import Flow, flow_series
 from liehom.flow.steps.step import (
     SERIES_FRACTION,
     Generator,
@@ -32,6 +34,7 @@ from liehom.flow.steps.step import (
     Step,
     StepLimits,
     polynomial,
+    series_at,
     squared_length,
 )
 from liehom.flow.tracing.array import Traced
@@ -119,7 +122,7 @@ class Taylor(Step):
     def at(self, action: Action, psi: Generator, m: Values, t: Values, *, error_terms: int = 0) -> LocalStep:
         if self._landing is None:
             return self.prepare(action, psi, m, t).at(action, psi, m, t, error_terms=error_terms)
-        flow = flow_series(psi.field, m, self.order, t[..., 0] if np.ndim(t) else t)
+        flow = _flow(psi.field, m, self.order, t[..., 0] if np.ndim(t) else t)
         points = [flow.point(k) for k in range(1, self.order + 1)]
         velocity = [flow.psi(k) for k in range(self.order)]
         if error_terms and isinstance(m, np.ndarray):  # psi = sqrt(t) has no derivative at 0, and steps by tolerance
@@ -166,20 +169,20 @@ class TaylorSeries(LocalStep):
         # log2 h is at most the least of these, by |m_k| h^j <= bound; terms of high order come last, as they are known
         least: Any = xp.where(limits.speed < np.inf, LARGEST_EXPONENT, np.nan)
         for k, square in enumerate(squares, first):
-            log: Any = 0.5 * coarse("coarse_log2", square)
+            log: Any = coarse("coarse_log2", square)
+            bound = error
             if k < n - 1:
                 share = 8 * k // n / 8
-                allows = (size * (1 - share) + (error * share + log2(EVEN)) - log) / k
-            else:
-                allows = (error - log) / k
+                bound = size * (1 - share) + (error * share + log2(EVEN))
+            allows = bound * (1 / k) - log * (0.5 / k)
             if k >= n - 1 and n > 3:
-                allows = _lesser(xp, allows, (way - log) / (k - 1))
+                allows = _lesser(xp, allows, way * (1 / (k - 1)) - log * (0.5 / (k - 1)))
             least = _lesser(xp, xp.where(square == 0, LARGEST_EXPONENT, allows), least)
         return _lesser(xp, limits.largest, coarse("coarse_exp2", least))
 
     def series(self, h: Values) -> Values:
         """m_0 + m_1 h + ... + m_n h^n for h of shape (..., 1), shape (..., N)."""
-        return self.m + polynomial([None, *self.trajectory], h)
+        return series_at(self.m, self.trajectory, h)
 
 
 @final
@@ -263,6 +266,17 @@ class LandedSeries(TaylorSeries):
             return lambda v: inverse.lifted(self.action, point, v, over)
         frame = self.action.isotropy_frame(point, self._dimension)
         return lambda v: least_generator(frame, v)
+
+
+def _flow(field: GeneratorField, m: Values, order: int, t: Values) -> Flow | AffineFlow:
+    """The expansion of the flow: of a traced one in fewer operations, which wait less for each other, if psi allows."""
+    if isinstance(m, Traced) and not field.time_dependent:
+        before = m.tape.calls
+        known = affine_flow(m, Traced(m.tape, field.psi(m)), field.infinitesimal, order)
+        if known is not None:
+            return known
+        m.tape.calls = before
+    return flow_series(field, m, order, t)  # type: ignore[arg-type]
 
 
 def _lesser(xp: ModuleType, a: Array, b: Array) -> Array:

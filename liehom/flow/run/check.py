@@ -90,9 +90,8 @@ def checked(
         point, velocity = local.look(s[..., None], time[..., None])
         lack: Any = squared_length(velocity - field.vector(point, t + time)) - floor
         if axes:
-            lack = xp.broadcast_to(
-                xp.sum(xp.maximum(lack, 0.0), axis=tuple(range(-axes, 0)), keepdims=True), lack.shape
-            )
+            total = xp.sum(xp.maximum(lack, 0.0), axis=tuple(range(-axes, 0)), keepdims=True)
+            lack = xp.broadcast_to(total, lack.shape)
         residual: Any = size * size * lack
         return residual, xp.where(residual <= largest, back + gap < size, size >= tiny), Seen(s, point)
 
@@ -116,7 +115,7 @@ def checked(
     return Checked(cut, looks, cuts, seen)
 
 
-def _within(local: LocalStep, h: Values, left: Values, direction: Real) -> Any:
+def _within(local: LocalStep, h: Values, left: Values, direction: Real) -> Values:
     """Sizes, at most h, of steps to the end at most, beyond which psi is not asked."""
     if not local.clock:
         return h

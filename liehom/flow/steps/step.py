@@ -263,14 +263,23 @@ def polynomial(coefficients: Sequence[Term], h: Values) -> Term:
     return total
 
 
+def series_at(m: Values, coefficients: Sequence[Values], s: Values) -> Values:
+    """m + c_1 s + c_2 s^2 + ... for s of shape (..., 1), in pairs, so that few operations wait for each other."""
+    level: list[Any] = list(coefficients)
+    power: Any = s
+    while len(level) > 1:
+        pairs = [a + b * power for a, b in zip(level[::2], level[1::2], strict=False)]
+        level = pairs + level[len(level) // 2 * 2 :]
+        power = power * power
+    return m + level[0] * s  # type: ignore[no-any-return]
+
+
 def series_with_slope(m: Values, coefficients: Sequence[Values], s: Values) -> tuple[Values, Values]:
-    """m + c_1 s + c_2 s^2 + ... and its derivative c_1 + 2 c_2 s + ..., for s of shape (..., 1)."""
-    value: Any = coefficients[-1]
-    slope: Any = value
-    for c in coefficients[-2::-1]:
-        value = c + value * s
-        slope = value + slope * s
-    return m + value * s, slope
+    """The same and its derivative c_1 + 2 c_2 s + ..."""
+    slope: Any = len(coefficients) * coefficients[-1]  # type: ignore[operator]
+    for k, c in reversed(list(enumerate(coefficients[:-1], 1))):
+        slope = k * c + slope * s
+    return series_at(m, coefficients, s), slope
 
 
 def apply_factors(action: Action, factors: Factors, m: Values) -> Values:

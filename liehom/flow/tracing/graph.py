@@ -61,8 +61,21 @@ def coarse_exp2(x: Number, xp: ModuleType = np) -> Number:
     return xp.ldexp(1.0 + rest * ((1.0 - BEND) + BEND * rest), known.astype("int32"))
 
 
+def _coarse_log2(x: float) -> float:
+    """The same for a float."""
+    mantissa, exponent = math.frexp(x)
+    return exponent + (2.0 * mantissa - 2.0) + MIDDLE if x else MIDDLE - 1023.0
+
+
+def _coarse_exp2(x: float) -> float:
+    x = max(min(x, LARGEST_EXPONENT), -LARGEST_EXPONENT)
+    whole = math.floor(x)
+    rest = x - whole
+    return math.ldexp(1.0 + rest * ((1.0 - BEND) + BEND * rest), whole)
+
+
 COARSE: dict[str, Callable[..., Number]] = {"coarse_log2": coarse_log2, "coarse_exp2": coarse_exp2}
-FOLDED |= {"coarse_log2": lambda x: coarse_log2(np.float64(x)), "coarse_exp2": lambda x: coarse_exp2(np.float64(x))}
+FOLDED |= {"coarse_log2": _coarse_log2, "coarse_exp2": _coarse_exp2}
 BOOLEAN = frozenset(["lt", "le", "eq", "ne", "and", "or", "not", "flag"])
 
 

@@ -97,8 +97,10 @@ class Writer:
 
     def coarse_exp2(self, x: str) -> str:
         """Name of `liehom.flow.tracing.graph.coarse_exp2`."""
-        kind, bound = self.integers, LARGEST_EXPONENT
-        x = self.intrinsic("minnum", self.intrinsic("maxnum", x, self.splat(-bound)), self.splat(bound))
+        kind = self.integers
+        for bound, op in ((self.splat(LARGEST_EXPONENT), "olt"), (self.splat(-LARGEST_EXPONENT), "ogt")):
+            inside = self.emit(f"fcmp {op} {self.vector} {x}, {bound}")
+            x = self.emit(f"select {self.mask} {inside}, {self.vector} {x}, {self.vector} {bound}")
         whole = self.intrinsic("floor", x)
         rest = self.binary("fsub", x, whole)
         slope = self.binary("fadd", self.binary("fmul", rest, self.splat(BEND)), self.splat(1.0 - BEND))
