@@ -96,7 +96,7 @@ ROOT_SERIES = (-1 / 2, 3 / 8, -5 / 16, 35 / 128, -63 / 256, 231 / 1024)
 
 def _to_level(square: Values, level: Values) -> Values:
     """The root of level / square. Compiled code takes a polynomial in blocks of lanes that are all near the level."""
-    if not isinstance(square, Traced):
+    if not isinstance(square, Traced) or not square.tape.branching:
         return cast(Values, namespace(square).sqrt(level / square))
     r = square / level - 1.0
     a, b, c, d, e, f = ROOT_SERIES

@@ -71,7 +71,15 @@ def step_for(problem: Problem, dimension: int, known: dict[Hashable, StepOnJax])
     if key not in known:
         try:
             graph = traced_step(
-                action, problem.field, step, points, dimension, nominal=o.nominal, args=_blank(args), lead=lead
+                action,
+                problem.field,
+                step,
+                points,
+                dimension,
+                nominal=o.nominal,
+                args=_blank(args),
+                lead=lead,
+                branching=False,
             )
             known[key] = GraphStep(graph) if _is_short(graph) or isinstance(step, Conserving) else array
         except TraceError:
@@ -112,9 +120,7 @@ def _blank(args: Pytree) -> Pytree:
 def _is_short(graph: StepGraph) -> bool:
     """Whether a graph is compiled as such: array code differentiates loops by the implicit function theorem."""
     operations = needed([*graph.point, *graph.summed.values()])
-    return len(operations) <= MAX_GRAPH_OPERATIONS and not any(
-        x.op == "loop" and not x.value.guarded for x in operations
-    )
+    return len(operations) <= MAX_GRAPH_OPERATIONS and not any(x.op == "loop" for x in operations)
 
 
 # The `Solution` of a call on JAX arrays, with a status for each trajectory as from numpy arrays.

@@ -137,11 +137,11 @@ MAX_CLOCK_DEVIATION = 0.8  # τ certainly increases at an admissible rate if |τ
 def traced_step(
     action: Action, field: GeneratorField, step: Step, points: Array, orbit_dimension: int, *, nominal: bool,
     ends: tuple[float, float] = (0.0, 0.0), limits: SizeLimits | None = None,
-    stops: bool = False, args: Pytree = None, lead: int = 1,
+    stops: bool = False, args: Pytree = None, lead: int = 1, branching: bool = True,
 ) -> StepGraph:  # fmt: skip
-    """The graph of a step on orbits of one dimension."""
+    """The graph of a step on orbits of one dimension; see `Tape` for `branching`."""
     try:
-        tape = Tape()
+        tape = Tape(branching=branching)
         field = field if args is None else field.with_args(traced_args(tape, args, lead))
         return _traced(tape, action, field, step, points, orbit_dimension, nominal, ends, limits, stops)
     except TraceError as error:
@@ -170,12 +170,11 @@ def _traced(
     h: Any = Traced(tape, tape.input(n + 1))
     psi, error_terms = Generator(_counted(tape, field), orbit_dimension), 0 if limits is None else ERROR_TERMS
     local = step.at(action, psi, m, t[..., None], error_terms=error_terms)
-    certain: Any = True
-    seen = None
+    tried = None
     if limits is not None:
         limits = _traced_limits(tape, limits)
-        size, certain, looks, cuts, seen = tried_size(limits, action, psi, local, step.order, m, t, h, field)
-        h = limits.direction * size
+        tried = tried_size(limits, action, psi, local, step.order, m, t, h, field)
+        h = limits.direction * tried.size  # type: ignore[operator]
     own_clock, first, reached = bool(local.clock) and not nominal, None, None
     passed = _number(tape, local.time(h) if own_clock else h) if own_clock or limits is not None else None
     if stops:
@@ -187,7 +186,7 @@ def _traced(
         h, reached, solvable = size_to_stop(local if own_clock else None, h, stop - t, bounds)
         tape.required.append(_number(tape, solvable))
     size = h[..., None]
-    moved: Any = local.point(size) if seen is None or not local.looks_ahead else _moved(tape, local, h, seen)
+    moved: Any = _moved(tape, local, h, None if tried is None else tried.seen)
     runs = None
     clock: tuple[tuple[int, Expr], ...] = ()
     if own_clock:
@@ -199,11 +198,13 @@ def _traced(
     if limits is not None:
         sizes = Sizes(_number(tape, h), *[_number(tape, x) for x in judgement(limits, local, m, size)])
     worst, summed = _statistics(tape, local, t, size, ends)
-    if limits is not None and limits.gap is not None and sizes is not None and local.estimate_order is None:
-        summed |= {"looks": _number(tape, looks), "cuts": _number(tape, cuts)}
+    if tried is not None and limits is not None and limits.gap is not None and local.estimate_order is None:
+        summed |= {"looks": _number(tape, tried.looks), "cuts": _number(tape, tried.cuts)}
     tape.required.append(_number(tape, local.valid(size)))
     solved = _all_of(tape, tape.required)
-    runs = _all_of(tape, [x for x in (runs, solved, _number(tape, certain)) if x is not None])
+    runs = _all_of(
+        tape, [x for x in (runs, solved, _number(tape, True if tried is None else tried.good)) if x is not None]
+    )
     point = [_number(tape, moved[i]) for i in range(n)]
     calls = int(tape.calls.value) if tape.calls.constant else None
     if calls is None:
@@ -216,8 +217,12 @@ def _traced(
     )  # fmt: skip
 
 
-def _moved(tape: Tape, local: LocalStep, h: Values, seen: Seen) -> Values:
-    """The point after the step, where psi was looked at; computed again in blocks with a lane that ends elsewhere."""
+def _moved(tape: Tape, local: LocalStep, h: Values, seen: Seen | None) -> Values:
+    """The point after the step. If psi was looked at there, it is known, except in blocks with a lane that ends
+    elsewhere.
+    """
+    if seen is None or not local.looks_ahead:
+        return local.point(h[..., None])  # type: ignore[index]
     elsewhere: Any = h != seen.size
 
     def again(elsewhere: Values, size: Values, point: Values) -> tuple[list[Values], Values]:

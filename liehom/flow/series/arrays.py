@@ -240,7 +240,7 @@ def coarse(name: str, x: Values) -> Array:
     """`coarse_log2` or `coarse_exp2` of x (`liehom.flow.tracing.graph`), the same numbers for all kinds of arrays."""
     if isinstance(x, Traced):
         return elementwise(x.tape, lambda e: x.tape.call(name, e), x)  # type: ignore[return-value]
-    return COARSE[name](x, namespace(x))  # type: ignore[no-any-return]
+    return COARSE[name](x, namespace(x))
 
 
 def power(x: Values, exponent: Fraction) -> npt.NDArray[Any]:

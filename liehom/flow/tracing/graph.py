@@ -276,6 +276,12 @@ CANCELLATION_RTOL = 4e-16
 class Tape:
     """The operations of one trace, in the order in which they were recorded.
 
+    Parameters
+    ----------
+    branching : bool
+        Whether rare cases may be left to loops of one iteration, which most blocks of lanes skip. Derivatives and
+        array code need a tape without them.
+
     Examples
     --------
     >>> tape = Tape()
@@ -284,7 +290,8 @@ class Tape:
     (True, True, 6.0)
     """
 
-    def __init__(self) -> None:
+    def __init__(self, *, branching: bool = True) -> None:
+        self.branching = branching
         self.recorded: list[Expr] = []
         self._known: dict[tuple[Hashable, ...], Expr] = {}
         self.zero, self.one = self.constant(0.0), self.constant(1.0)
