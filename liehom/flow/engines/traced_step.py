@@ -186,7 +186,7 @@ def _traced(
         h, reached, solvable = size_to_stop(local if own_clock else None, h, stop - t, bounds)
         tape.required.append(_number(tape, solvable))
     size = h[..., None]
-    moved: Any = _moved(tape, local, h, None if tried is None else tried.seen)
+    moved: Any = _moved(tape, local, size, tried and tried.seen)
     runs = None
     clock: tuple[tuple[int, Expr], ...] = ()
     if own_clock:
@@ -194,17 +194,15 @@ def _traced(
         runs = _clock_is_admissible(tape, local.clock, h)
         if limits is not None:  # adaptive steps are larger than fixed ones: the sharper test of a run
             runs = _number(tape, clock_at(local, h)[0])
-    sizes = None
-    if limits is not None:
-        sizes = Sizes(_number(tape, h), *[_number(tape, x) for x in judgement(limits, local, m, size)])
+    judged = () if limits is None else judgement(limits, local, m, size)
+    sizes = Sizes(_number(tape, h), *[_number(tape, x) for x in judged]) if judged else None
     worst, summed = _statistics(tape, local, t, size, ends)
     if tried is not None and limits is not None and limits.gap is not None and local.estimate_order is None:
         summed |= {"looks": _number(tape, tried.looks), "cuts": _number(tape, tried.cuts)}
     tape.required.append(_number(tape, local.valid(size)))
     solved = _all_of(tape, tape.required)
-    runs = _all_of(
-        tape, [x for x in (runs, solved, _number(tape, True if tried is None else tried.good)) if x is not None]
-    )
+    certain = tape.true if tried is None else _number(tape, tried.good)
+    runs = _all_of(tape, [x for x in (runs, solved, certain) if x is not None])
     point = [_number(tape, moved[i]) for i in range(n)]
     calls = int(tape.calls.value) if tape.calls.constant else None
     if calls is None:
@@ -217,19 +215,17 @@ def _traced(
     )  # fmt: skip
 
 
-def _moved(tape: Tape, local: LocalStep, h: Values, seen: Seen | None) -> Values:
-    """The point after the step. If psi was looked at there, it is known, except in blocks with a lane that ends
-    elsewhere.
+def _moved(tape: Tape, local: LocalStep, size: Values, seen: Seen | None) -> Values:
+    """The point after a step of size (1,). If psi was looked at there, it is known, except in blocks with a lane that
+    ends elsewhere.
     """
     if seen is None or not local.looks_ahead:
-        return local.point(h[..., None])  # type: ignore[index]
-    elsewhere: Any = h != seen.size
+        return local.point(size)
 
     def again(elsewhere: Values, size: Values, point: Values) -> tuple[list[Values], Values]:
-        moved = np.where(elsewhere, local.point(size[..., None]), point)  # type: ignore[index]
-        return [elsewhere, size, moved], np.zeros((), bool)
+        return [elsewhere, size, np.where(elsewhere, local.point(size), point)], np.zeros((), bool)
 
-    return while_loop(again, [elsewhere, h, seen.point], tape, 1, guarded=True)[2]
+    return while_loop(again, [(size != seen.size)[..., 0], size, seen.point], tape, 1, guarded=True)[2]
 
 
 def _all_of(tape: Tape, conditions: Sequence[Expr]) -> Expr | None:
