@@ -67,7 +67,7 @@ ORDER: dict[str, list[str]] = {
         "liehom.flow.methods": "midpoint composition runge_kutta tableaux rkmk low_order stiff stability taylor named",
         "liehom.flow.propagation": "propagator integration ensemble",
         "liehom.flow.run": "check control records events options solution run",
-        "liehom.flow.series": "arrays node jet jet_functions lie_series",
+        "liehom.flow.series": "arrays quadratic node jet jet_functions lie_series",
         "liehom.flow.steps": (
             "implicit range_solver step expansion corrected curvature first_integral conserving symbolic_problem "
             "formulas order_conditions"

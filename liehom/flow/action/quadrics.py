@@ -20,6 +20,7 @@ from liehom.flow.action.space import Action
 from liehom.flow.door import Representation
 from liehom.flow.series.arrays import namespace
 from liehom.flow.tracing.array import Traced
+from liehom.flow.tracing.loop import while_loop
 
 # Orbits that are open in a product of quadrics and affine spaces, and the projection onto them.
 #
@@ -80,12 +81,32 @@ class Quadrics:
 
     def _projected(self, block: Block, m: Values, level: Values) -> Values:
         if block.form is None:
-            return cast(Values, m * namespace(m).sqrt(level / (m * m).sum(axis=-1))[..., None])
+            return cast(Values, m * _to_level((m * m).sum(axis=-1), level)[..., None])
         gradient = times(m, block.form)
         square, missing = (gradient * gradient).sum(axis=-1), level - (m * gradient).sum(axis=-1)
         # (m + x g)^T Q (m + x g) = level is a quadratic equation in x
         share, curvature = missing / square, self._value(block, gradient) / square
         return m + (share / (1 + namespace(m).sqrt(1 + share * curvature)))[..., None] * gradient
+
+
+NEAR_LEVEL = 4e-3
+"""Relative distance of |m|^2 to its level up to which the root of their quotient is a polynomial of degree 6."""
+ROOT_SERIES = (-1 / 2, 3 / 8, -5 / 16, 35 / 128, -63 / 256, 231 / 1024)
+"""Taylor coefficients of (1 + r)^(-1/2)."""
+
+
+def _to_level(square: Values, level: Values) -> Values:
+    """The root of level / square. Compiled code takes a polynomial in blocks of lanes that are all near the level."""
+    if not isinstance(square, Traced) or not square.tape.branching:
+        return cast(Values, namespace(square).sqrt(level / square))
+    r = square / level - 1.0
+    a, b, c, d, e, f = ROOT_SERIES
+    near = 1.0 + r * ((a + b * r) + (r * r) * ((c + d * r) + (r * r) * (e + f * r)))
+
+    def exact(far: Traced, square: Traced, near: Traced) -> tuple[list[Traced], Values]:
+        return [far, square, cast(Traced, np.where(far, np.sqrt(level / square), near))], np.zeros((), bool)
+
+    return while_loop(exact, [~(np.abs(r) <= NEAR_LEVEL), square, near], square.tape, 1, guarded=True)[2]
 
 
 def quadric_orbits(representation: Representation, dimension: int | IntegerArray, points: Array) -> Quadrics | None:

@@ -71,7 +71,15 @@ def step_for(problem: Problem, dimension: int, known: dict[Hashable, StepOnJax])
     if key not in known:
         try:
             graph = traced_step(
-                action, problem.field, step, points, dimension, nominal=o.nominal, args=_blank(args), lead=lead
+                action,
+                problem.field,
+                step,
+                points,
+                dimension,
+                nominal=o.nominal,
+                args=_blank(args),
+                lead=lead,
+                branching=False,
             )
             known[key] = GraphStep(graph) if _is_short(graph) or isinstance(step, Conserving) else array
         except TraceError:

@@ -177,7 +177,7 @@ class FastPath:
             graph = traced_step(
                 run.action, run.field, run.step, points[lanes], int(d), ends=(float(run.span[0]), float(run.span[1])),
                 nominal=o.nominal, limits=run.limits if o.dt is None else None,
-                args=args_of_lanes(run.field.args, run.shape, lanes),
+                args=args_of_lanes(run.field.args, run.shape, lanes), branching=False,
             )  # fmt: skip
             rows = graph.constants(points[lanes])
             self.groups.append((lanes, JaxKernel(graph), np.array(rows) if rows else ()))

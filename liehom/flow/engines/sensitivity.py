@@ -198,7 +198,7 @@ class _Group:
         args = None if problem.args is None else args_of_lanes(problem.args, problem.start.shape[:-1], lanes)
         self.graph: StepGraph = traced_step(
             problem.action, problem.field, problem.step, self._start, dimension, nominal=problem.options.nominal,
-            args=args,
+            args=args, branching=False,
         )  # fmt: skip
         self._outputs = [*self.graph.point, *([] if self.graph.elapsed is None else [self.graph.elapsed])]
         self._given = self.graph.constants(self._start)

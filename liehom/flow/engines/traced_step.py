@@ -14,7 +14,7 @@ from liehom.base.typing import Array, IntegerArray, Pytree, Real, Values
 from liehom.flow.action.field import GeneratorField
 from liehom.flow.action.frames import tight_frame
 from liehom.flow.action.space import Action
-from liehom.flow.run.check import is_unbounded
+from liehom.flow.run.check import Seen, is_unbounded
 from liehom.flow.run.control import (
     ERROR_TERMS,
     MAX_RATE,
@@ -137,11 +137,11 @@ MAX_CLOCK_DEVIATION = 0.8  # τ certainly increases at an admissible rate if |τ
 def traced_step(
     action: Action, field: GeneratorField, step: Step, points: Array, orbit_dimension: int, *, nominal: bool,
     ends: tuple[float, float] = (0.0, 0.0), limits: SizeLimits | None = None,
-    stops: bool = False, args: Pytree = None, lead: int = 1,
+    stops: bool = False, args: Pytree = None, lead: int = 1, branching: bool = True,
 ) -> StepGraph:  # fmt: skip
-    """The graph of a step on orbits of one dimension."""
+    """The graph of a step on orbits of one dimension; see `Tape` for `branching`."""
     try:
-        tape = Tape()
+        tape = Tape(branching=branching)
         field = field if args is None else field.with_args(traced_args(tape, args, lead))
         return _traced(tape, action, field, step, points, orbit_dimension, nominal, ends, limits, stops)
     except TraceError as error:
@@ -163,11 +163,11 @@ def _traced(
     h: Any = Traced(tape, tape.input(n + 1))
     psi, error_terms = Generator(_counted(tape, field), orbit_dimension), 0 if limits is None else ERROR_TERMS
     local = step.at(action, psi, m, t[..., None], error_terms=error_terms)
-    certain: Any = True
+    tried = None
     if limits is not None:
         limits = _traced_limits(tape, limits)
-        size, certain, looks, cuts = tried_size(limits, action, psi, local, step.order, m, t, h, field)
-        h = limits.direction * size
+        tried = tried_size(limits, action, psi, local, step.order, m, t, h, field)
+        h = limits.direction * tried.size
     own_clock, first, reached = bool(local.clock) and not nominal, None, None
     passed = _number(tape, local.time(h) if own_clock else h) if own_clock or limits is not None else None
     if stops:
@@ -179,7 +179,7 @@ def _traced(
         h, reached, solvable = size_to_stop(local if own_clock else None, h, stop - t, bounds)
         tape.required.append(_number(tape, solvable))
     size = h[..., None]
-    moved: Any = local.point(size)
+    moved: Any = _moved(tape, local, size, tried and tried.seen)
     runs = None
     clock: tuple[tuple[int, Expr], ...] = ()
     if own_clock:
@@ -187,15 +187,15 @@ def _traced(
         runs = _clock_is_admissible(tape, local.clock, h)
         if limits is not None:  # adaptive steps are larger than fixed ones: the sharper test of a run
             runs = _number(tape, clock_at(local, h)[0])
-    sizes = None
-    if limits is not None:
-        sizes = Sizes(_number(tape, h), *[_number(tape, x) for x in judgement(limits, local, m, size)])
+    judged = () if limits is None else judgement(limits, local, m, size)
+    sizes = Sizes(_number(tape, h), *[_number(tape, x) for x in judged]) if judged else None
     worst, summed = _statistics(tape, local, t, size, ends)
-    if limits is not None and limits.gap is not None and sizes is not None and local.estimate_order is None:
-        summed |= {"looks": _number(tape, looks), "cuts": _number(tape, cuts)}
+    if tried is not None and limits is not None and limits.gap is not None and local.estimate_order is None:
+        summed |= {"looks": _number(tape, tried.looks), "cuts": _number(tape, tried.cuts)}
     tape.required.append(_number(tape, local.valid(size)))
     solved = all_of(tape, tape.required)
-    runs = all_of(tape, [x for x in (runs, solved, _number(tape, certain)) if x is not None])
+    certain = tape.true if tried is None else _number(tape, tried.good)
+    runs = all_of(tape, [x for x in (runs, solved, certain) if x is not None])
     point = [_number(tape, moved[i]) for i in range(n)]
     calls = int(tape.calls.value) if tape.calls.constant else None
     if calls is None:
@@ -206,6 +206,19 @@ def _traced(
         tried=None if reached is None else _number(tape, h),
         first=None if first is None else _number(tape, first),
     )  # fmt: skip
+
+
+def _moved(tape: Tape, local: LocalStep, size: Values, seen: Seen | None) -> Values:
+    """The point after a step of size (1,). If psi was looked at there, it is known, except in blocks with a lane that
+    ends elsewhere.
+    """
+    if seen is None or not local.looks_ahead:
+        return local.point(size)
+
+    def again(elsewhere: Values, size: Values, point: Values) -> tuple[list[Values], Values]:
+        return [elsewhere, size, np.where(elsewhere, local.point(size), point)], np.zeros((), bool)
+
+    return while_loop(again, [(size != seen.size)[..., 0], size, seen.point], tape, 1, guarded=True)[2]
 
 
 def with_traced_frame(tape: Tape, action: Action, step: Step, points: Array, orbit_dimension: int) -> Action:

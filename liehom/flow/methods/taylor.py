@@ -10,7 +10,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass
-from math import ceil, log
+from math import ceil, log, log2
+from types import ModuleType
 from typing import Any, ClassVar, NamedTuple, final
 
 import numpy as np
@@ -18,24 +19,27 @@ import numpy as np
 from liehom.base.errors import InputError
 from liehom.base.typing import Array, BooleanArray, IntegerArray, Values
 from liehom.flow.action.exponential import TrueExponential
+from liehom.flow.action.field import GeneratorField
 from liehom.flow.action.invariants import InvariantLanding, invariant_landing
 from liehom.flow.action.quadrics import Quadrics, TightInverse, quadric_orbits, tight_inverse
 from liehom.flow.action.space import Action
-from liehom.flow.series.arrays import is_traced, namespace
+from liehom.flow.series.arrays import coarse, is_traced, namespace
 from liehom.flow.series.jet import Jet
+from liehom.flow.series.quadratic import AffineFlow, affine_flow
 from liehom.flow.steps.corrected import least_generator
-from liehom.flow.steps.expansion import flow_series
+from liehom.flow.steps.expansion import Flow, flow_series
 from liehom.flow.steps.step import (
     SERIES_FRACTION,
     Generator,
     LocalStep,
     Step,
     StepLimits,
-    length,
-    over_sites,
     polynomial,
+    series_at,
+    squared_length,
 )
 from liehom.flow.tracing.array import Traced
+from liehom.flow.tracing.graph import LARGEST_EXPONENT
 
 MAGNUS_ORDER = 4  # order of Exp(xi) m for xi = M_0 - [M_0, M_1] and the true exponential
 SECOND_ORDER = 2  # the same for any other Exp, which agrees with the true one through order 2
@@ -124,7 +128,7 @@ class Taylor(Step):
     def at(self, action: Action, psi: Generator, m: Values, t: Values, *, error_terms: int = 0) -> LocalStep:
         if self._landing is None:
             return self.prepare(action, psi, m, t).at(action, psi, m, t, error_terms=error_terms)
-        flow = flow_series(psi.field, m, self.order, t[..., 0] if np.ndim(t) else t)
+        flow = _flow(psi.field, m, self.order, t[..., 0] if np.ndim(t) else t)
         points = [flow.point(k) for k in range(1, self.order + 1)]
         velocity = [flow.psi(k) for k in range(self.order)]
         if error_terms and isinstance(m, np.ndarray):  # psi = sqrt(t) has no derivative at 0, and steps by tolerance
@@ -166,51 +170,39 @@ class TaylorSeries(LocalStep):
 
     def size(self, limits: StepLimits) -> Array:
         """Largest size (...,) at which the last two terms, and those of the upper half of the orders as the last may
-        vanish, are within the error that is allowed, and at most a tenth of the length |X| h of the step.
+        vanish, are within the error that is allowed, and at most a tenth of the length |X| h of the step. With an error
+        of |m| theta^n a term of order k is at most `EVEN` |m| theta^k, k/n rounded down to eighths.
         """
-        n, xp = len(self.trajectory), namespace(limits.largest, limits.speed)
-        first = max(n // 2, 1)
-        terms = [over_sites(length(x), limits.axes) for x in self.trajectory[first - 1 :]]
-        before, last = terms[-2] if n > 1 else terms[-1], terms[-1]
-        way: Any = xp.where(limits.speed > 0, SERIES_FRACTION * limits.speed, np.inf)
-        a: Any = limits.allowed / last  # h^n is at most this
-        least, root = a, 1 / n
-        if n > 3:
-            # h^(n-1) and h^(n-2) are at most b and c; powers of quotients, which are sizes, do not overflow
-            b: Any = xp.minimum(limits.allowed / before, way / last)
-            c: Any = way / before
-            first_of_two = (a / b) ** (n - 1) < b
-            least, root = xp.where(first_of_two, a, b), xp.where(first_of_two, 1 / n, 1 / (n - 1))
-            third = ((a / c) ** (n - 2) > c * c) & ((b / c) ** (n - 2) > c)
-            least, root = xp.where(third, c, least), xp.where(third, 1 / (n - 2), root)
-        h: Any = xp.minimum(limits.largest, least**root)
-        return self._shortened(h, terms[:-2], first, limits)
-
-    def _shortened(self, h: Array, terms: Sequence[Array], first: int, limits: StepLimits) -> Array:
-        """The size, smaller if a term of an order k from `first` on is not small: with an error of |m| theta^n it may
-        be `EVEN` times |m| theta^k, that of a series that converges evenly, with k/n rounded down to eighths.
-        """
-        if not terms:
-            return h
-        n, xp = len(self.trajectory), namespace(h, limits.speed)
-        size: Any = over_sites(length(self.m), limits.axes)
-        eighth, worst = xp.sqrt(xp.sqrt(xp.sqrt(size / limits.allowed))), 1.0
-        unit, power = 1 / (EVEN * size), h**first
-        for k, term in enumerate(terms, first):
-            part = xp.where(term > 0, term * power * unit * eighth ** (8 * k // n), 0.0)
-            worst, power = xp.maximum(worst, part), power * h
-        while first > 1:  # a root of an order that is a power of 2 and at most `first`
-            worst, first = xp.sqrt(worst), first // 2
-        return h / worst
+        n, axes = len(self.trajectory), limits.axes
+        xp, first = namespace(limits.largest, limits.speed), max(n // 2, 1)
+        squares = [squared_length(x, axes) for x in self.trajectory[first - 1 :]]
+        error: Any = coarse("coarse_log2", limits.allowed)
+        way: Any = xp.where(limits.speed > 0, coarse("coarse_log2", SERIES_FRACTION * limits.speed), np.inf)
+        size: Any = 0.5 * coarse("coarse_log2", squared_length(self.m, axes))
+        # log2 h is at most the least of these, by |m_k| h^j <= bound; terms of high order come last, as they are known
+        least: Any = xp.where(limits.allowed + limits.speed < np.inf, LARGEST_EXPONENT, np.nan)
+        for k, square in enumerate(squares, first):
+            log: Any = coarse("coarse_log2", square)
+            bound = error
+            if k < n - 1:
+                share = 8 * k // n / 8
+                bound = size * (1 - share) + (error * share + log2(EVEN))
+            allows = bound * (1 / k) - log * (0.5 / k)
+            if k >= n - 1 and n > 3:
+                allows = _lesser(xp, allows, way * (1 / (k - 1)) - log * (0.5 / (k - 1)))
+            least = _lesser(xp, xp.where(square == 0, LARGEST_EXPONENT, allows), least)
+        return _lesser(xp, limits.largest, coarse("coarse_exp2", least))
 
     def series(self, h: Values) -> Values:
         """m_0 + m_1 h + ... + m_n h^n for h of shape (..., 1), shape (..., N)."""
-        return self.m + polynomial([None, *self.trajectory], h)
+        return series_at(self.m, self.trajectory, h)
 
 
 @final
 class ProjectedSeries(TaylorSeries):
     """The Taylor polynomial, projected onto level sets of quadratic forms."""
+
+    looks_ahead = True
 
     def __init__(
         self, action: Action, m: Values, coefficients: Sequence[Values], quadrics: Quadrics, start: Values | None
@@ -320,6 +312,22 @@ class InvariantSeries(TaylorSeries):
             steps = 1 if len(self.trajectory) >= SHARP_ORDER else 2
             self._latest = h, *self._landing.landed(self.series(h), self._numbers, steps)
         return self._latest[1:]
+
+
+def _flow(field: GeneratorField, m: Values, order: int, t: Values) -> Flow | AffineFlow:
+    """The expansion of the flow: of a traced one in fewer operations, which wait less for each other, if psi allows."""
+    if isinstance(m, Traced) and not field.time_dependent:
+        before = m.tape.calls
+        known = affine_flow(m, Traced(m.tape, field.psi(m)), field.infinitesimal, order)
+        if known is not None:
+            return known
+        m.tape.calls = before
+    return flow_series(field, m, order, t)
+
+
+def _lesser(xp: ModuleType, a: Values, b: Values) -> Array:
+    """The lesser of two numbers; b if one of them is NaN."""
+    return xp.where(a < b, a, b)
 
 
 def _finite(coefficients: list[Values]) -> list[Values]:

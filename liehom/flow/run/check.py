@@ -24,8 +24,8 @@ import numpy as np
 
 from liehom.base.typing import Array, Real, Values
 from liehom.flow.action.field import GeneratorField
-from liehom.flow.series.arrays import is_jax, namespace
-from liehom.flow.steps.step import LocalStep, length, over_sites
+from liehom.flow.series.arrays import coarse, is_jax, namespace
+from liehom.flow.steps.step import LocalStep, squared_length
 from liehom.flow.tracing.array import Traced
 from liehom.flow.tracing.loop import while_loop
 
@@ -37,12 +37,20 @@ MAX_LOOKS = 1_000_000  # within one step
 FITS = 3  # iterations for the size of a step with a time of its own that comes to the end of the span
 
 
+class Seen(NamedTuple):
+    """The first look at psi in a step: at a signed size (...,), and the point (..., N) there."""
+
+    size: Array
+    point: Values
+
+
 class Checked(NamedTuple):
-    """Sizes (...,) of steps after the check, and how often psi was looked at and a size was cut."""
+    """Sizes (...,) of steps after the check, how often psi was looked at and a size was cut, and the first look."""
 
     size: Array
     looks: Array
     cuts: Array
+    seen: Seen
 
 
 def gap_of(looks: int | None, span: Real, field: GeneratorField) -> Real | None:
@@ -67,39 +75,55 @@ def checked(
     """Sizes at most h, without sign, at which the series of a step passes all looks; below `tiny` if there are none."""
     xp, c = namespace(m, t, h), local.trajectory
     root = 1 / (len(c) + 1)
-    rounded: Any = length(c[0])
+    rounded: Any = squared_length(c[0])
     if field.time_dependent and len(c) > 1:  # the times at which X is asked for are rounded too
-        rounded = rounded + 2 * xp.abs(t) * length(c[1])
-    floor = 8 * float(np.finfo(np.float64).eps) * rounded
+        time: Any = t
+        rounded = rounded + 4 * time * time * squared_length(c[1])
+    floor = (8 * float(np.finfo(np.float64).eps)) ** 2 * rounded
+    bound: Any = ALLOWED_RESIDUAL * allowed
+    largest = bound * bound
 
-    def look(wanted: Values, h: Values, back: Values) -> tuple[Values, Values]:
-        """The residual at a look, in units of what is allowed, and whether the step needs another one."""
-        s: Any = direction * xp.where(wanted, h - back, 0.0)
+    def look(size: Values, back: Values) -> tuple[Values, Values, Seen]:
+        """The square of the residual at a look, whether the step needs another one, and where psi was looked at."""
+        s: Any = direction * (size - back)
         time: Any = direction * xp.minimum(direction * local.time(s), left) if local.clock else s
         point, velocity = local.look(s[..., None], time[..., None])
-        lack: Any = length(velocity - field.vector(point, t + time)) - floor
-        residual: Any = h * over_sites(xp.maximum(lack, 0.0), axes) / (ALLOWED_RESIDUAL * allowed)
-        return residual, wanted & xp.where(residual <= 1, back + gap < h, h >= tiny)
+        lack: Any = squared_length(velocity - field.vector(point, t + time)) - floor
+        if axes:
+            total = xp.sum(xp.maximum(lack, 0.0), axis=tuple(range(-axes, 0)), keepdims=True)
+            lack = xp.broadcast_to(total, lack.shape)
+        residual: Any = size * size * lack
+        return residual, xp.where(residual <= largest, back + gap < size, size >= tiny), Seen(s, point)
 
     def again(wanted: Values, h: Values, back: Values, residual: Values, looks: Values, cuts: Values) -> list[Values]:
-        passes = ~wanted | (residual <= 1)
-        factor: Any = 0.9 * residual**-root
+        passes = ~wanted | (residual <= largest)
+        gain: Any = coarse("coarse_log2", largest) - coarse("coarse_log2", residual)
+        factor: Any = 0.9 * coarse("coarse_exp2", (root / 2) * gain)
         factor = xp.where(factor > SMALLEST_CUT, xp.minimum(factor, LARGEST_CUT), SMALLEST_CUT)
-        h, back = xp.where(passes, h, factor * h), xp.where(passes, back + gap, 0.0)
+        h, back = xp.where(passes, h, factor * _within(local, h, left, direction)), xp.where(passes, back + gap, 0.0)
         looks, cuts = looks + xp.where(wanted, 1.0, 0.0), cuts + xp.where(passes, 0.0, 1.0)
-        new, wanted_again = look(wanted, h, back)
-        return [wanted_again, h, back, xp.where(wanted, new, residual), looks, cuts]
+        size = _within(local, h, left, direction)
+        new, more, _ = look(xp.where(wanted, size, 0.0), xp.where(wanted, back, 0.0))
+        # psi that is not finite within the step is the reason of a size that is too small
+        h = xp.where(wanted & xp.isnan(new) & ~more, np.nan, h)
+        return [wanted & more, h, back, xp.where(wanted, new, residual), looks, cuts]
 
-    size: Any = xp.minimum(h, left)
-    for _ in range(FITS if local.clock else 0):  # psi is not asked beyond the end
-        passed: Any = local.time(direction * size) * direction
-        size = xp.where(passed > left, size * left / passed, size)
+    size = _within(local, h, left, direction)
     zero: Any = 0.0 * size
-    residual, wanted = look(size > 0, size, zero)
-    _, cut, _, residual, looks, cuts = repeated(again, [wanted, size, zero, residual, zero + 1, zero])
-    # psi that is not finite within the step is the reason of a size that is too small
-    cut = xp.where(xp.isnan(residual), np.nan, cut)
-    return Checked(xp.where(cuts > 0, cut, h), looks, cuts)
+    residual, wanted, seen = look(size, zero)
+    _, cut, _, _, looks, cuts = repeated(again, [wanted, h, zero, residual, zero + 1, zero])
+    return Checked(cut, looks, cuts, seen)
+
+
+def _within(local: LocalStep, h: Values, left: Values, direction: Real) -> Values:
+    """Sizes, at most h, of steps to the end at most, beyond which psi is not asked."""
+    if not local.clock:
+        return h
+    size: Any = namespace(h, left).minimum(h, left)
+    for _ in range(FITS):
+        passed: Any = local.time(direction * size) * direction
+        size = namespace(h, left).where(passed > left, size * left / passed, size)
+    return size
 
 
 def repeated(body: Callable[..., list[Any]], state: list[Any], limit: int = MAX_LOOKS) -> Sequence[Any]:

@@ -15,7 +15,7 @@ from liehom.base.errors import ConvergenceError
 from liehom.base.typing import Array, BooleanArray, Real, Values
 from liehom.flow.action.field import GeneratorField
 from liehom.flow.action.space import Action
-from liehom.flow.run.check import checked, is_unbounded
+from liehom.flow.run.check import Seen, checked, is_unbounded
 from liehom.flow.series.arrays import namespace
 from liehom.flow.steps.expansion import flow_series, step_series
 from liehom.flow.steps.step import (
@@ -129,6 +129,7 @@ MAX_SHRINK = 0.2  # the smallest ratio of the next step size to the last one
 ERROR_TERMS = 2  # number of Taylor coefficients of the error that are computed
 MAX_GROWTH = 8.0  # without an embedded pair, the largest ratio of the next step size to the last one
 NONFINITE_RATIO = 1e10  # error, in units of the tolerance, that stands for one that is not finite
+SLOW_CLOCK = 2.0  # with a clock, the largest size of a step, in units of the time to the end
 MAX_TRIALS = 200  # number of attempts to find out which trajectories a step cannot be solved for
 MIN_ROUNDOFFS = 10.0  # the smallest relative tolerance, in units of round-off
 
@@ -183,6 +184,7 @@ class Tried(NamedTuple):
     good: BooleanArray  # whether time advances by the size; if not, the run ends the trajectory
     looks: Values  # looks at psi within the step, and how often they have cut its size
     cuts: Values
+    seen: Seen | None = None  # the first look
 
 
 def tried_size(
@@ -192,9 +194,9 @@ def tried_size(
     """The sizes of the next steps, at most the proposal; what psi does within the step is seen in `looked_at`."""
     xp, axes = namespace(m, t), len(psi.field.sites)
     left: Any = xp.abs(limits.end - t)
-    bound: Any = xp.minimum(proposal, largest_size(limits.max_step, left))
+    bound: Any = xp.minimum(proposal, largest_size(limits.max_step, left, SLOW_CLOCK if local.clock else 1.0))
     looks: Any = 0.0
-    cuts, moves = looks, limits.moves
+    seen, cuts, moves = None, looks, limits.moves
     embedded = local.estimate_order is not None
     if embedded and limits.gap is not None:
         if is_unbounded(limits.gap):
@@ -212,11 +214,11 @@ def tried_size(
             speed = xp.maximum(speed, allowed / bound)
         h = known_size(action, local, m, order, StepLimits(allowed, speed, bound, axes))
         if limits.gap is not None:
-            h, looks, cuts = checked(
+            h, looks, cuts, seen = checked(
                 looked_at, local, m, t, h, allowed, left,
                 direction=limits.direction, gap=limits.gap, tiny=limits.tiny, axes=axes,
             )  # fmt: skip
-    return Tried(h, is_large_enough(h, limits.tiny, left), looks, cuts)
+    return Tried(h, is_large_enough(h, limits.tiny, left), looks, cuts, seen)
 
 
 def first_size(limits: SizeLimits, local: LocalStep, psi: Generator, m: Values, t: Values) -> Values | None:
@@ -228,9 +230,9 @@ def first_size(limits: SizeLimits, local: LocalStep, psi: Generator, m: Values, 
     return xp.minimum(longest, FIRST_STEP_FRACTION * time_scale(psi.field, m, t))
 
 
-def largest_size(max_step: Real, left: Values) -> Array:
-    """Bound for the step sizes with the time `left` to the end, twice that time because the clock may be slow."""
-    return namespace(max_step, left).minimum(max_step, 2 * left)
+def largest_size(max_step: Real, left: Values, slow: float = SLOW_CLOCK) -> Array:
+    """Bound for the step sizes with the time `left` to the end, a multiple of that time if a clock may be slow."""
+    return namespace(max_step, left).minimum(max_step, slow * left)
 
 
 def is_large_enough(h: Values, tiny: Real, left: Real) -> BooleanArray:

@@ -306,7 +306,7 @@ class Automaton:
         if local.estimate_order is not None and np.isinf(now.h).any():
             guess: Any = first_size(limits, local, self.psi, now.m, now.t)
             now.h = np.where(np.isinf(now.h), guess, now.h)
-        h, good, looks, cuts = tried_size(
+        h, good, looks, cuts, _ = tried_size(
             limits, self.action, self.psi, local, self.step.order, now.m, now.t, now.h, self.psi.field
         )
         h = np.asarray(h).astype(self.dtype)

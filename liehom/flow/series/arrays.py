@@ -18,8 +18,9 @@ from numpy.typing import ArrayLike
 
 from liehom.base.errors import FieldError, SeriesError, SingularError
 from liehom.base.objects import refuse_masked
-from liehom.base.typing import Number, ObjectArray, Values
-from liehom.flow.tracing.array import Traced
+from liehom.base.typing import Array, Number, ObjectArray, Values
+from liehom.flow.tracing.array import Traced, elementwise
+from liehom.flow.tracing.graph import COARSE
 from liehom.flow.tracing.lattice import LatticeTraced
 
 ExactNumber: TypeAlias = Any
@@ -233,6 +234,13 @@ def _symbolic(library: ModuleType, name: str, x: ExactNumber) -> ExactNumber:
     if name in ("log2", "log10"):
         return library.log(x) / library.log(0 * x + int(name[3:]))
     return getattr(library, _SYMPY.get(name, name))(x)
+
+
+def coarse(name: str, x: Values) -> Array:
+    """`coarse_log2` or `coarse_exp2` of x (`liehom.flow.tracing.graph`), the same numbers for all kinds of arrays."""
+    if isinstance(x, Traced):
+        return elementwise(x.tape, lambda e: x.tape.call(name, e), x)  # type: ignore[return-value]
+    return COARSE[name](x, namespace(x))
 
 
 def power(x: Values, exponent: Fraction) -> npt.NDArray[Any]:

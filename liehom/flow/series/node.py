@@ -198,7 +198,8 @@ def bilinear(function: Callable[[Any, Any], Values], a: Node, b: Node, value: Va
 
     def rule(k: int) -> Coefficient:
         total = None
-        for i in range(start, k + end):
+        # the newest coefficients come last, so that compiled code need not wait for them
+        for i in sorted(range(start, k + end), key=lambda i: max(i, k - i)):
             x, y = first[i], second[k - i]
             if x is not None and y is not None:
                 term = function(x, y)

@@ -70,6 +70,16 @@ def length(x: Values) -> Array:
     return root
 
 
+def squared_length(x: Values, axes: int = 0) -> Array:
+    """Sum of squares over the last axis, in float64, and over the `axes` before it, the sites of a lattice."""
+    values = floats(x)
+    square: Array = (values * values).sum(axis=-1)
+    if not axes:
+        return square
+    xp = namespace(square)
+    return xp.broadcast_to(xp.sum(square, axis=tuple(range(-axes, 0)), keepdims=True), square.shape)
+
+
 def over_sites(x: Values, axes: int) -> Array:
     """Root of the sum of squares over the last axes, the sites of a lattice, repeated for each site."""
     if not axes:
@@ -130,6 +140,8 @@ class LocalStep:
         The Taylor coefficients psi_0, psi_1, ... of the generator along it, if `quick`.
     quick : bool
         Whether `point` needs neither equations nor values of psi, so that points within the step are quickly computed.
+    looks_ahead : bool
+        Whether the point of `look` is `point` itself, which is then computed once.
     estimate_order : int or None
         k if `estimate` is O(h^k); None if there is no estimate.
     widest_gap : float
@@ -155,6 +167,7 @@ class LocalStep:
     trajectory: Sequence[Values] = ()
     velocity: Sequence[Values] = ()
     quick: bool = False
+    looks_ahead: bool = False
     estimate_order: int | None = None
     widest_gap: float = 1.0
     clock: tuple[tuple[int, Values], ...] = ()
@@ -250,14 +263,23 @@ def polynomial(coefficients: Sequence[Term], h: Values) -> Term:
     return total
 
 
+def series_at(m: Values, coefficients: Sequence[Values], s: Values) -> Values:
+    """m + c_1 s + c_2 s^2 + ... for s of shape (..., 1), in pairs, so that few operations wait for each other."""
+    level: list[Any] = list(coefficients)
+    power: Any = s
+    while len(level) > 1:
+        pairs = [a + b * power for a, b in zip(level[::2], level[1::2], strict=False)]
+        level = pairs + level[len(level) // 2 * 2 :]
+        power = power * power
+    return m + level[0] * s
+
+
 def series_with_slope(m: Values, coefficients: Sequence[Values], s: Values) -> tuple[Values, Values]:
-    """m + c_1 s + c_2 s^2 + ... and its derivative c_1 + 2 c_2 s + ..., for s of shape (..., 1)."""
-    value: Any = coefficients[-1]
-    slope: Any = value
-    for c in coefficients[-2::-1]:
-        value = c + value * s
-        slope = value + slope * s
-    return m + value * s, slope
+    """The same and its derivative c_1 + 2 c_2 s + ..."""
+    slope: Any = len(coefficients) * coefficients[-1]
+    for k, c in reversed(list(enumerate(coefficients[:-1], 1))):
+        slope = k * c + slope * s
+    return series_at(m, coefficients, s), slope
 
 
 def apply_factors(action: Action, factors: Factors, m: Values) -> Values:

@@ -7,6 +7,7 @@ import math
 import operator
 from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass
+from types import ModuleType
 from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeAlias, final
 
 import numpy as np
@@ -18,6 +19,9 @@ from liehom.base.errors import TraceError
 
 NumberLike: TypeAlias = object
 """A tracer, or a number that `Tape.of` makes a constant."""
+
+Number: TypeAlias = Any
+"""A number or an array of numbers, of numpy or of JAX."""
 
 Payload: TypeAlias = Any
 """Data of an operation: a constant's value, an index, the name of a variable, a `Loop`, positions in a matrix."""
@@ -35,6 +39,43 @@ OPERATORS: dict[str, Callable[..., Any]] = {
     "add": operator.add, "sub": operator.sub, "mul": operator.mul, "div": operator.truediv, "neg": operator.neg,
     "pow": operator.pow, "lt": operator.lt, "le": operator.le, "eq": operator.eq, "ne": operator.ne,
 }  # fmt: skip
+# Powers of step sizes need no digits: with the exponent of a float as an integer, and the polynomials of degree 1 and 2
+# of the mantissa, they need no branches either. All engines compute the same numbers.
+MIDDLE = 0.0430  # half of the largest difference of log2(1 + x) and x in [0, 1]
+BEND = 0.3435  # 1 + x (1 - BEND (1 - x)) is 2^x up to 0.4 % in [0, 1]
+LARGEST_EXPONENT = 1000.0
+
+
+def coarse_log2(x: Number, xp: ModuleType = np) -> Number:
+    """The logarithm of x > 0 to base 2, up to 0.0431; -1023 for 0."""
+    mantissa, exponent = xp.frexp(x)
+    return xp.where(x == 0, MIDDLE - 1023.0, exponent + (2.0 * mantissa - 2.0) + MIDDLE)
+
+
+def coarse_exp2(x: Number, xp: ModuleType = np) -> Number:
+    """2^x up to 0.4 %, for x between -1000 and 1000, the nearest of which is taken for others."""
+    x = xp.clip(x, -LARGEST_EXPONENT, LARGEST_EXPONENT)
+    whole = xp.floor(x)
+    rest = x - whole
+    known = xp.where(xp.isfinite(whole), whole, 0.0)
+    return xp.ldexp(1.0 + rest * ((1.0 - BEND) + BEND * rest), known.astype("int32"))
+
+
+def _coarse_log2(x: float) -> float:
+    """The same for a float."""
+    mantissa, exponent = math.frexp(x)
+    return exponent + (2.0 * mantissa - 2.0) + MIDDLE if x else MIDDLE - 1023.0
+
+
+def _coarse_exp2(x: float) -> float:
+    x = max(min(x, LARGEST_EXPONENT), -LARGEST_EXPONENT)
+    whole = math.floor(x)
+    rest = x - whole
+    return math.ldexp(1.0 + rest * ((1.0 - BEND) + BEND * rest), whole)
+
+
+COARSE: dict[str, Callable[..., Number]] = {"coarse_log2": coarse_log2, "coarse_exp2": coarse_exp2}
+FOLDED |= {"coarse_log2": _coarse_log2, "coarse_exp2": _coarse_exp2}
 BOOLEAN = frozenset(["lt", "le", "eq", "ne", "and", "or", "not", "flag"])
 
 
@@ -235,6 +276,12 @@ CANCELLATION_RTOL = 4e-16
 class Tape:
     """The operations of one trace, in the order in which they were recorded.
 
+    Parameters
+    ----------
+    branching : bool
+        Whether rare cases may be left to loops of one iteration, which most blocks of lanes skip. Derivatives and
+        array code need a tape without them.
+
     Examples
     --------
     >>> tape = Tape()
@@ -243,7 +290,8 @@ class Tape:
     (True, True, 6.0)
     """
 
-    def __init__(self) -> None:
+    def __init__(self, *, branching: bool = True) -> None:
+        self.branching = branching
         self.recorded: list[Expr] = []
         self._known: dict[tuple[Hashable, ...], Expr] = {}
         self.zero, self.one = self.constant(0.0), self.constant(1.0)

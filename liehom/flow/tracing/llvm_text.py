@@ -9,7 +9,7 @@ from itertools import count
 from typing import final
 
 from liehom.base.errors import TraceError
-from liehom.flow.tracing.graph import Expr
+from liehom.flow.tracing.graph import BEND, LARGEST_EXPONENT, MIDDLE, Expr
 
 FLAGS = "contract"
 LIBM = {
@@ -87,6 +87,36 @@ class Writer:
             value = self.emit(f"call double @{name}({', '.join(f'double {x}' for x in one)})")
             vector = self.emit(f"insertelement {self.vector} {vector}, double {value}, i32 {lane}")
         return vector
+
+    def coarse_log2(self, x: str) -> str:
+        """Name of `liehom.flow.tracing.graph.coarse_log2`: the bits of a float, as an integer, are its logarithm."""
+        kind = self.integers
+        bits = self.emit(f"sub {kind} {self.emit(f'bitcast {self.vector} {x} to {kind}')}, {self._whole(1023 << 52)}")
+        scaled = self.binary("fmul", self.emit(f"sitofp {kind} {bits} to {self.vector}"), self.splat(2.0**-52))
+        return self.binary("fadd", scaled, self.splat(MIDDLE))
+
+    def coarse_exp2(self, x: str) -> str:
+        """Name of `liehom.flow.tracing.graph.coarse_exp2`."""
+        kind = self.integers
+        # the lower bound first, which is taken for NaN too, so that no step is made
+        for bound, op in ((self.splat(-LARGEST_EXPONENT), "ogt"), (self.splat(LARGEST_EXPONENT), "olt")):
+            inside = self.emit(f"fcmp {op} {self.vector} {x}, {bound}")
+            x = self.emit(f"select {self.mask} {inside}, {self.vector} {x}, {self.vector} {bound}")
+        whole = self.intrinsic("floor", x)
+        rest = self.binary("fsub", x, whole)
+        slope = self.binary("fadd", self.binary("fmul", rest, self.splat(BEND)), self.splat(1.0 - BEND))
+        mantissa = self.binary("fadd", self.binary("fmul", rest, slope), self.splat(1.0))
+        power = self.emit(f"shl {kind} {self.emit(f'fptosi {self.vector} {whole} to {kind}')}, {self._whole(52)}")
+        bits = self.emit(f"add {kind} {self.emit(f'bitcast {self.vector} {mantissa} to {kind}')}, {power}")
+        return self.emit(f"bitcast {kind} {bits} to {self.vector}")
+
+    @property
+    def integers(self) -> str:
+        """The type of an integer of 64 bits for each lane."""
+        return "i64" if self.width == 1 else f"<{self.width} x i64>"
+
+    def _whole(self, x: int) -> str:
+        return str(x) if self.width == 1 else "<" + ", ".join([f"i64 {x}"] * self.width) + ">"
 
     def any(self, mask: str) -> str:
         """Name of the i1 that is true if a mask holds in some lane."""
@@ -435,6 +465,10 @@ class Body:
                 return self._pair("turn", x.args[0], args[0])[x.op == "cos"]
             case "sqrt" | "abs":
                 return w.intrinsic("fabs" if x.op == "abs" else "sqrt", *args)
+            case "coarse_log2":
+                return w.coarse_log2(args[0])
+            case "coarse_exp2":
+                return w.coarse_exp2(args[0])
             case "expv":
                 return call_exponential(w, x, args)
             case "neg":

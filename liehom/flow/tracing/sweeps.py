@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from liehom.base.errors import TraceError
 from liehom.base.typing import Array
-from liehom.flow.tracing.graph import OPERATORS, Expr, Tape, needed
+from liehom.flow.tracing.graph import COARSE, OPERATORS, Expr, Tape, needed
 from liehom.flow.tracing.llvm_text import SHORT_SERIES_REACH, rotation_series
 
 # Derivatives of a recorded graph in reverse mode: one pass backwards gives all partial derivatives as graphs, at a
@@ -68,7 +68,7 @@ def evaluated(outputs: Sequence[Expr], inputs: Mapping[int, Any]) -> list[Any]:
 
 
 IN_NUMPY: dict[str, Callable[..., Any]] = {
-    **OPERATORS, "and": np.logical_and, "not": np.logical_not, "select": np.where, "abs": np.abs,
+    **OPERATORS, **COARSE, "and": np.logical_and, "not": np.logical_not, "select": np.where, "abs": np.abs,
     "sinq": lambda q: rotation(q, 1), "cosq": lambda q: rotation(q, 0),
 }  # fmt: skip
 
@@ -333,6 +333,8 @@ def _value(
         return _exponential(jnp, x.value, args)
     if x.op in ("sinq", "cosq"):
         return _rotation(jnp, args[0], int(x.op == "sinq"))
+    if x.op in COARSE:
+        return COARSE[x.op](args[0], jnp)
     function = OPERATORS.get(x.op) or getattr(jnp, _NAMES.get(x.op, x.op), None)
     if function is None:
         raise TraceError(f"the operation {x.op} is not known to JAX")

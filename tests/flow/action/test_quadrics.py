@@ -90,3 +90,15 @@ def test_orbits_of_several_dimensions_or_singular_points_have_none() -> None:
     assert quadric_orbits(lh.defining(lh.so(3, 1)), np.array([3, 2]), np.ones((2, 4))) is None
     degenerate = twice(lh.defining(lh.so(3)))  # a point whose second copy is 0: its orbit is a sphere in one block
     assert found_at(degenerate, [0.6, 0, 0.8, 0, 0, 0]) is None
+
+
+@pytest.mark.parametrize("speeds", [[1.0], [0.01, 0.1, 0.5, 1.0, 2.0, 3.0, 0.02, 1.0, 0.001]])
+def test_compiled_steps_land_from_near_and_from_far(speeds: list[float]) -> None:
+    """Steps of order 2 leave |m|^2 by 1e-12 to 30 %; lanes of a block land by a polynomial or by a root."""
+    pytest.importorskip("llvmlite")
+    field = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m: -m * [1.0, 0.5, 0.25])
+    starts = np.array(speeds)[:, None] * [0.36, 0.48, 0.8]
+    runs = [lh.integrate(field, (0, 12), starts, step=lh.Taylor(2), dt=1.0, engine=e).y for e in ("numpy", "llvm")]
+    sizes = np.array(speeds)[:, None]
+    assert np.abs(np.linalg.norm(runs[1], axis=1) / sizes - 1).max() < 1e-15
+    assert (np.abs(runs[1] - runs[0]).max(axis=1) / sizes).max() < 1e-12

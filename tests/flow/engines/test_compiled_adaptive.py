@@ -1,5 +1,6 @@
 """Compiled steps with adapted sizes against numpy: times, points, steps, calls; ensembles, ends, refusals."""
 
+from collections import Counter
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +12,7 @@ from liehom.base.errors import InputError
 from liehom.flow.engines import lanes as kernel_lanes
 from liehom.flow.engines.lanes import HandBack
 from liehom.flow.run.options import Progress
+from liehom.flow.tracing.graph import needed
 from tests.flow.engines.test_compiled import BODY, START, a_field, both, cache, sphere
 from tests.flow.propagation import spaces
 
@@ -278,3 +280,20 @@ def test_what_is_not_compiled_is_refused() -> None:
         lh.integrate(BODY, (0, 1), START, step=STEPS["RK45"], events=lambda t, y: y[0], engine="jax")
     with jax.enable_x64(True), pytest.raises(InputError, match="events"):
         lh.integrate(BODY, (0, 1), jax.numpy.asarray(START), step=STEPS["RK45"], engine="jax", events=lambda t, y: y[0])
+
+
+def test_sizes_of_taylor_steps_need_no_library_and_few_roots() -> None:
+    propagator = lh.Propagator(BODY, lh.Taylor(8), engine="llvm")
+    propagator((0, 3), START, rtol=1e-7)
+    (graph,) = propagator.engine._store.graphs.values()  # type: ignore[attr-defined]
+    ops = Counter(x.op for x in needed(graph.outputs))
+    assert graph.sizes is not None and not ops["pow"] + ops["log2"] + ops["exp2"]
+    assert ops["sqrt"] <= 2 and ops["div"] <= 1 and ops["coarse_exp2"] <= 1
+
+
+@pytest.mark.parametrize("rtol", [1e-3, 1e-7])
+def test_points_at_output_times_within_steps_are_not_those_of_the_looks(rtol: float) -> None:
+    times = np.linspace(0.1, 9.9, 57)
+    plain, made = both(BODY, (0, 10), sphere(9) * SPEEDS[:9], step=lh.Taylor(8), rtol=rtol, t_eval=times)
+    np.testing.assert_array_equal(made.n_steps, plain.n_steps)
+    np.testing.assert_allclose(made.y, plain.y, rtol=0, atol=1e-12)

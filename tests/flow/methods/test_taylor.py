@@ -334,5 +334,6 @@ def test_the_unit_of_time_does_not_change_the_steps(unit, engine):
 
     result, expected = run(unit), run(1.0)
     assert result.n_steps == expected.n_steps
-    assert np.abs(result.y - expected.y).max() < 1e-12 + 1e-6 * np.abs(expected.y).max()
+    # powers of sizes are computed to some per mille, which depend on the unit
+    assert np.allclose(result.t / unit, expected.t, rtol=0.01, atol=0)
     assert np.abs(result.y[:, -1] - [np.cos(8), np.sin(8)]).max() < 1e-8
