@@ -184,7 +184,7 @@ def test_what_is_no_function_of_point_and_time_stays_with_numpy() -> None:
         {"events": lambda t, y: y[..., 0]},
         {"checkpoint": "run"},
     ],
-    ids=str,
+    ids=["a step", "a base step", "events", "a checkpoint"],
 )
 def test_steps_and_events_of_users_and_checkpoints_stay_with_numpy(options: Any, tmp_path: Path) -> None:
     if "checkpoint" in options:
