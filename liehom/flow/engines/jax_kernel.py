@@ -22,7 +22,7 @@ from liehom.flow.tracing.sweeps import evaluate_with_jax
 MAX_STORED_STEPS = 256
 """Steps are stored in blocks of powers of 2, at most this one, so that few functions are compiled."""
 CPU_OPERATION_COST = 16  # duration of an operation by JAX on the CPU, in units of an operation of machine code
-UNROLLED_OPERATIONS = 2000
+UNROLLED_OPERATIONS = 4000
 """Operations of a step up to which they are compiled one by one, in a time that grows with their square."""
 MAX_JITTED = 64  # number of graphs whose jitted functions are cached
 _JITTED: dict[str, Any] = {}

@@ -407,7 +407,7 @@ def _in_loops(tape: Tape, name: str, inputs: Sequence[Operand]) -> Traced | None
 
 
 def _product(tape: Tape, name: str, inputs: Sequence[Operand]) -> Traced | None:
-    """A product of one or two arrays with sums over axes; None for other products."""
+    """A product of arrays with sums over axes, at most two of them not constant; None for other products."""
     subscripts = inputs[0] if name == "einsum" else None
     arrays = [_numbers(tape, x).entries for x in (inputs[1:] if name == "einsum" else inputs)]
     if name == "outer":
@@ -420,7 +420,8 @@ def _product(tape: Tape, name: str, inputs: Sequence[Operand]) -> Traced | None:
         subscripts = "...i,i->..." if second == 1 else SUBSCRIPTS[name]
     else:
         subscripts = SUBSCRIPTS.get(name, subscripts)
-    if not isinstance(subscripts, str) or "->" not in subscripts or not 0 < len(arrays) < 3:
+    varying = sum(any(not x.constant for x in a.flat) for a in arrays)
+    if not isinstance(subscripts, str) or "->" not in subscripts or varying > 2:
         return None
     left, out = subscripts.replace(" ", "").split("->")
     parts, free = left.split(","), [x for x in LABELS if x not in subscripts]

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import liehom as lh
-from liehom.flow.engines import llvm_engine
+from liehom.flow.engines import jax_kernel, llvm_engine
 from liehom.flow.tracing.array import Traced, contracted
 from liehom.flow.tracing.graph import LongGraphError, Table, Tape, needed
 
@@ -52,6 +52,32 @@ def test_loops_give_the_numbers_of_numpy(
     options.pop("step")
     solution = propagator((0.0, 1.0), start, **options)
     assert np.array_equal(solution.n_steps, wanted.n_steps)
+    assert abs(solution.y - wanted.y).max() < 1e-13
+
+
+@pytest.mark.parametrize("name", ["elementary functions", "einsum"])
+def test_jax_computes_with_arrays_in_place_of_loops(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("jax")
+    monkeypatch.setattr(jax_kernel, "UNROLLED_OPERATIONS", 1)
+    field, start = lh.GeneratorField(lh.defining(lh.so(K)), PSIS[name]), _points(3)
+    options: dict[str, Any] = {"step": lh.Taylor(3), "t_eval": [0.4, 1.0], "dt": 0.05}
+    wanted = lh.integrate(field, (0.0, 1.0), start, **options)
+    solution = lh.integrate(field, (0.0, 1.0), start, engine="jax", **options)
+    assert abs(solution.y - wanted.y).max() < 1e-13
+
+
+@pytest.mark.parametrize(
+    "step", [lh.Corrected(lh.Euler(), 3), lh.RKMK("rk4"), lh.LieTaylor(3), lh.Taylor(4)], ids=repr
+)
+def test_clocks_exponentials_and_landings_in_loops(step: lh.Step, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(llvm_engine, "UNROLLED_OPERATIONS", 1)
+    rho = lh.defining(lh.so(5)) if isinstance(step, lh.Corrected) else lh.adjoint(lh.su(3))
+    linear = np.random.default_rng(2).normal(size=(rho.size, rho.algebra.dimension)) / 8
+    field = lh.GeneratorField(rho, lambda m: m @ linear)
+    start = np.random.default_rng(3).normal(size=(3, rho.size))
+    options: dict[str, Any] = {"step": step, "t_eval": [0.1, 0.2], "dt": 0.02}
+    wanted = lh.integrate(field, (0.0, 0.2), start, **options)
+    solution = lh.integrate(field, (0.0, 0.2), start, engine="llvm", **options)
     assert abs(solution.y - wanted.y).max() < 1e-13
 
 
