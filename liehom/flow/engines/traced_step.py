@@ -143,7 +143,9 @@ def traced_step(
 
     def traced(tape: Tape) -> StepGraph:
         own = field if args is None else field.with_args(traced_args(tape, args, lead))
-        return _traced(tape, action, own, step, points, orbit_dimension, nominal, ends, limits, stops)
+        graph = _traced(tape, action, own, step, points, orbit_dimension, nominal, ends, limits, stops)
+        tape.most = None  # a check of the initial points is added later
+        return graph
 
     try:
         try:

@@ -10,8 +10,10 @@ import pytest
 
 import liehom as lh
 from liehom.flow.engines import jax_kernel, llvm_engine
+from liehom.flow.engines.traced_step import traced_step
 from liehom.flow.tracing.array import Traced, contracted
 from liehom.flow.tracing.graph import LongGraphError, Table, Tape, needed
+from liehom.flow.tracing.machine import Kernel
 
 pytest.importorskip("llvmlite")
 
@@ -66,9 +68,7 @@ def test_jax_computes_with_arrays_in_place_of_loops(name: str, monkeypatch: pyte
     assert abs(solution.y - wanted.y).max() < 1e-13
 
 
-@pytest.mark.parametrize(
-    "step", [lh.Corrected(lh.Euler(), 3), lh.RKMK("rk4"), lh.LieTaylor(3), lh.Taylor(4)], ids=repr
-)
+@pytest.mark.parametrize("step", [lh.Corrected(lh.Euler(), 3), lh.RKMK("rk4"), lh.LieTaylor(3), lh.Taylor(4)], ids=repr)
 def test_clocks_exponentials_and_landings_in_loops(step: lh.Step, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(llvm_engine, "UNROLLED_OPERATIONS", 1)
     rho = lh.defining(lh.so(5)) if isinstance(step, lh.Corrected) else lh.adjoint(lh.su(3))
@@ -123,10 +123,19 @@ def test_a_tape_that_is_full_says_so() -> None:
         Traced.inputs(tape, 0, 9)
 
 
-def test_the_code_grows_with_the_arrays_and_not_with_their_products() -> None:
-    from liehom.flow.engines.traced_step import traced_step
-    from liehom.flow.tracing.machine import Kernel
+def test_a_step_that_is_just_short_enough_has_its_check_of_initial_points(monkeypatch: pytest.MonkeyPatch) -> None:
+    field, start = (
+        lh.GeneratorField(lh.defining(lh.so(4)), lambda m: m @ np.ones((4, 6))),
+        np.array([0.6, 0.0, 0.8, 0.0]),
+    )
+    graph = traced_step(lh.Action(field.representation), field, lh.Taylor(3), start[None], 3, nominal=False)
+    monkeypatch.setattr(llvm_engine, "UNROLLED_OPERATIONS", len(graph.point[0].tape.recorded))  # type: ignore[attr-defined]
+    options: dict[str, Any] = {"step": lh.Taylor(3), "dt": 0.1}
+    wanted = lh.integrate(field, (0.0, 1.0), start, **options)
+    assert abs(lh.integrate(field, (0.0, 1.0), start, engine="llvm", **options).y - wanted.y).max() < 1e-14
 
+
+def test_the_code_grows_with_the_arrays_and_not_with_their_products() -> None:
     sizes = []
     for k in (6, 24):
         rng, rho = np.random.default_rng(0), lh.defining(lh.so(k))
