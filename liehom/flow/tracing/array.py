@@ -397,12 +397,12 @@ def _in_loops(tape: Tape, name: str, inputs: Sequence[Operand]) -> Traced | None
     operation = MAPPED.get(name) or (name if name in FOLDED and len(inputs) == 1 else None)
     if operation is None:
         return None
-    arrays = [_numbers(tape, x).entries for x in (inputs * 2 if name == "square" else inputs)]
+    arrays = [_numbers(tape, x).entries for x in (*inputs, *inputs[: name == "square"])]
     if operation == "div" and (arrays[1].size == 1 or all(x.constant and x.value != 0 for x in arrays[1].flat)):
         operation, arrays[1] = "mul", elementwise(tape, lambda x: tape.div(tape.one, x), arrays[1]).entries
     spread = np.broadcast_arrays(*arrays)
     out = np.empty(spread[0].size, dtype=object)
-    out[:] = tape.mapped(operation, *[a.reshape(-1) for a in spread])
+    out[:] = tape.mapped(operation, *[list(a.reshape(-1)) for a in spread])
     return Traced(tape, out.reshape(spread[0].shape))
 
 

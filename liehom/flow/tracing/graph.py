@@ -591,7 +591,7 @@ class Tape:
         """An operation on the entries of lists of one length; those that constants simplify are recorded alone."""
         alone: Callable[..., Expr] = getattr(self, name, None) or (lambda *args: self.call(name, *args))
         simple = np.array([_simplifies(name, entries) for entries in zip(*lists, strict=True)], dtype=bool)
-        rest = np.flatnonzero(~simple)
+        rest = np.flatnonzero(~simple).tolist()
         if self.least_loop is None or len(rest) < self.least_loop:
             return [alone(*entries) for entries in zip(*lists, strict=True)]
         loop = iter(self.block("map", [x[i] for x in lists for i in rest], len(rest), (name, len(rest))))
@@ -607,7 +607,7 @@ class Tape:
             values = np.array([float(x.value) if x.constant else 1.0 for x in numbers])
             factors = factors * values[place]
             if not constant.all():
-                one = dict.fromkeys(np.flatnonzero(constant), self.one)
+                one = dict.fromkeys(np.flatnonzero(constant).tolist(), self.one)
                 lists.append(([one.get(i, x) for i, x in enumerate(numbers)] if one else numbers, place))
         kept = factors != 0
         row, factors, lists = row[kept], factors[kept], [(x, place[kept]) for x, place in lists]
