@@ -23,6 +23,7 @@ from liehom.flow.action.maps import (
     cayley_logarithm,
     expm1,
     identity,
+    matrices_of,
     norms,
     series_terms,
     solve,
@@ -682,7 +683,7 @@ def contains_cubes(representation: Representation) -> bool:
     By polarization, and because g is closed under brackets, the cubes lie in D(g) if (a b + b a) c + c (a b + b a)
     does for all basis elements a, b, c. Then D(g) contains all odd powers, and x y x.
     """
-    a = np.array([m.to_numpy() for m in representation.matrices])
+    a = matrices_of(representation)
     n = len(a)
     if n == 0:
         return True

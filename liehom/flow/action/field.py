@@ -15,7 +15,7 @@ from liehom.base.objects import Immutable
 from liehom.base.typing import Array, IntegerArray, Pytree, Real, ScalarLike, Values, ValuesLike
 from liehom.flow.action.components import Components, GeneratorLike, checked_form, guarded, joined, of_trajectory
 from liehom.flow.action.frames import inner_product
-from liehom.flow.action.maps import action_map, inverse, solve
+from liehom.flow.action.maps import action_map, inverse, matrices_of, solve
 from liehom.flow.door import LieAlgebra, Representation, batched_ranks, coadjoint
 from liehom.flow.series import node as recurrences
 from liehom.flow.series.arrays import as_values, is_exact, is_jax, is_traced, namespace, zeros
@@ -60,7 +60,7 @@ class LeastNorm:
         if not rtol > 0:
             raise InputError(f"rtol is {rtol!r}, expected a positive number")
         self._dimension, self._rtol = orbit_dimension, rtol
-        flat = np.array([a.to_numpy() for a in representation.matrices]).reshape(len(self._basis), size * size)
+        flat = matrices_of(representation).reshape(len(self._basis), size * size)
         self._size = float(np.linalg.norm(self._basis.T @ flat, axis=-1).max(initial=0.0))
 
     def __call__(self, m: ValuesLike, t: Real = 0.0) -> Values:

@@ -10,7 +10,7 @@ import numpy as np
 
 from liehom.base.errors import InputError
 from liehom.base.typing import Array, BooleanArray, Real, Values, ValuesLike
-from liehom.flow.action.maps import FieldMap
+from liehom.flow.action.maps import FieldMap, matrices_of
 from liehom.flow.door import LieAlgebra, Matrix, Representation, copies_of, defining
 from liehom.flow.series.arrays import namespace
 
@@ -23,6 +23,7 @@ from liehom.flow.series.arrays import namespace
 # the product of coefficients in the given basis.
 
 RTOL = 1e-9
+ELEMENTS = 3  # random elements of the algebra on which a linear condition is checked
 
 
 @final
@@ -142,22 +143,26 @@ def _named(algebra: LieAlgebra, form: Array, name: str) -> InnerProduct:
 
 def _rows(representation: Representation) -> tuple[Array, Array]:
     """The matrices rho(e_i) and their transposes as rows."""
-    n, size = representation.algebra.dimension, representation.size
-    a = np.array([m.to_numpy() for m in representation.matrices]).reshape(n, size, size)
-    return a.reshape(n, size * size), np.swapaxes(a, -1, -2).reshape(n, size * size)
+    a, shape = matrices_of(representation), (representation.algebra.dimension, representation.size**2)
+    return a.reshape(shape), np.swapaxes(a, -1, -2).reshape(shape)
 
 
 def _is_invariant(algebra: LieAlgebra, form: Array) -> bool:
-    """Whether <[x, y], z> + <y, [x, z]> = 0 on the basis, to round-off."""
-    n = algebra.dimension
-    bracket = np.zeros((n, n, n))
-    for i, j, k, value in algebra.structure_constants():
-        bracket[i, j, k] = algebra.field.to_float(value)
-        bracket[j, i, k] = -bracket[i, j, k]
-    scale = 1 / np.sqrt(np.diagonal(form))
-    lowered = scale[:, None, None] * scale[:, None] * scale * (bracket @ form)  # of basis elements of length 1
-    defect = np.abs(lowered + np.swapaxes(lowered, 1, 2)).max(initial=0.0)
-    return bool(defect <= RTOL * np.abs(lowered).max(initial=0.0))
+    """Whether <[x, y], z> + <y, [x, z]> = 0 for all y and z, to round-off, and some random x; it is linear in x."""
+    n, constants = algebra.dimension, list(algebra.structure_constants())
+    if not constants:
+        return True
+    i, j, k = np.array([entry[:3] for entry in constants]).T
+    scale = 1 / np.sqrt(np.diagonal(form))  # basis elements of length 1
+    values = np.array([algebra.field.to_float(entry[3]) for entry in constants]) * scale[i] * scale[j] / scale[k]
+    for x in np.random.default_rng(0).normal(size=(ELEMENTS, n)):
+        bracket = np.zeros((n, n))
+        np.add.at(bracket, (j, k), values * x[i])
+        np.add.at(bracket, (i, k), -values * x[j])
+        lowered = bracket @ (scale[:, None] * scale * form)
+        if not np.abs(lowered + lowered.T).max() <= RTOL * np.abs(lowered).max():
+            return False
+    return True
 
 
 def _is_positive(form: Array) -> bool:

@@ -10,7 +10,7 @@ from typing import Any, Literal, TypeVar, final, overload
 import numpy as np
 
 from liehom.base.errors import InputError, ShapeError, SingularError
-from liehom.base.typing import Array, Values, ValuesLike
+from liehom.base.typing import Array, IntegerArray, ObjectArray, Values, ValuesLike
 from liehom.flow.door import Field, Matrix, Representation, Scalar, copies_of
 from liehom.flow.series import node as recurrences
 from liehom.flow.series.arrays import across_lanes, in_lanes, is_exact, is_jax, is_lazy, namespace, zeros
@@ -18,6 +18,7 @@ from liehom.flow.series.jet import Jet
 from liehom.flow.series.lie_series import Bilinear
 from liehom.flow.series.node import Node
 from liehom.flow.tracing.array import Traced
+from liehom.flow.tracing.graph import Expr, Tape
 
 # The action (x, m) -> rho(x) m and the bracket (x, y) -> [x, y] as bilinear maps on arrays and Jets.
 #
@@ -76,6 +77,10 @@ class FieldMap:
     def scale(self) -> float:
         """The largest modulus of a coefficient."""
         return max((abs(value) for *_, value in self._floats), default=0.0)
+
+    def tensor(self) -> Array:
+        """The coefficients v_ijk as floats, shape (a, b, c)."""
+        return self._floating.tensor()
 
     @overload
     def __call__(self, x: Jet, y: ValuesLike | Jet) -> Jet: ...
@@ -216,10 +221,27 @@ class FieldMap:
         left, right = Traced(tape, x).entries, Traced(tape, y).entries
         lead = np.broadcast_shapes(left.shape[:-1], right.shape[:-1])
         out = np.empty((*lead, self.shape[2]), dtype=object)
+        if tape.least_loop is not None:
+            out.reshape(-1)[:] = self._in_loops(tape, left, right, lead)
+            return Traced(tape, out)
         out.fill(tape.zero)
         for i, j, k, value in self._entries:
             out[..., k] = out[..., k] + left[..., i] * right[..., j] * self._field.to_float(value)
         return Traced(tape, out)
+
+    def _in_loops(self, tape: Tape, left: ObjectArray, right: ObjectArray, lead: tuple[int, ...]) -> list[Expr]:
+        """The entries of B(x, y) as one operation of a graph."""
+        places = np.array([entry[:3] for entry in self._entries], dtype=np.int64).reshape(-1, 3)
+        copies = np.arange(int(np.prod(lead, dtype=int)))[:, None]
+
+        def operand(x: ObjectArray, place: IntegerArray) -> tuple[list[Expr], IntegerArray]:
+            own = np.broadcast_to(np.arange(x.size // x.shape[-1]).reshape(x.shape[:-1]), lead).reshape(-1, 1)
+            return list(x.reshape(-1)), (own * x.shape[-1] + place).reshape(-1)
+
+        factors = np.tile([self._field.to_float(entry[3]) for entry in self._entries], len(copies))
+        row = (copies * self.shape[2] + places[:, 2]).reshape(-1)
+        operands = operand(left, places[:, 0]), operand(right, places[:, 1])
+        return tape.summed(len(copies) * self.shape[2], row, factors, *operands)
 
     def _exactly(self) -> Bilinear:
         if not self._field.exact:
@@ -288,6 +310,11 @@ def action_map(representation: Representation) -> FieldMap:
         shape = (representation.algebra.dimension, n, n)
         known = _latest = representation, FieldMap(entries, shape, representation.field)
     return known[1]
+
+
+def matrices_of(representation: Representation) -> Array:
+    """The matrices rho(e_a) as floats, shape (dim g, N, N)."""
+    return np.ascontiguousarray(np.swapaxes(action_map(representation).tensor(), 1, 2))
 
 
 def action_entries(representation: Representation) -> list[tuple[int, int, int, Scalar]]:

@@ -16,6 +16,7 @@ from liehom.flow.action.invariants import (
     monomials,
     times,
 )
+from liehom.flow.action.maps import matrices_of
 from liehom.flow.action.space import Action
 from liehom.flow.door import Representation
 from liehom.flow.series.arrays import namespace
@@ -111,7 +112,7 @@ def _to_level(square: Values, level: Values) -> Values:
 
 def quadric_orbits(representation: Representation, dimension: int | IntegerArray, points: Array) -> Quadrics | None:
     """The `Quadrics` in whose level sets the orbits of points are open, or None if there are none."""
-    matrices = np.array([a.to_numpy() for a in representation.matrices])
+    matrices = matrices_of(representation)
     moving = np.abs(matrices).max(axis=(0, 2), initial=0.0) > 0  # the other coordinates are constant
     parts = _components(matrices, moving)
     dimensions = np.unique(np.asarray(dimension))
@@ -231,7 +232,7 @@ def tight_inverse(action: Action, points: Array, rank: int) -> TightInverse | No
     flat = points.reshape(-1, size)
     if rank < 1 or not len(flat) or size > MAX_BLOCK:
         return None
-    matrices = np.array([a.to_numpy() for a in action.representation.matrices])
+    matrices = matrices_of(action.representation)
     form = invariant_form(matrices / max(float(np.abs(matrices).max(initial=0.0)), 1e-300))
     if form is None:
         return None

@@ -15,7 +15,7 @@ from liehom.base.typing import IntegerArray, Values, ValuesLike
 from liehom.flow.action.custom_exponential import ExponentialLike, exponential_of
 from liehom.flow.action.exponential import Exponential
 from liehom.flow.action.frames import InnerProduct, TightFrame, inner_product, orthogonal_decomposition
-from liehom.flow.action.maps import FieldMap, action_map, bracket_map
+from liehom.flow.action.maps import FieldMap, action_map, bracket_map, matrices_of
 from liehom.flow.door import Representation, copies_of
 from liehom.flow.series.arrays import is_jax, namespace
 from liehom.flow.series.jet import Jet
@@ -72,7 +72,7 @@ class Action:
             self._size = Action(copies.single).max_norm
             return
         shape = (representation.algebra.dimension, representation.size**2)
-        tensor = np.array([a.to_numpy() for a in representation.matrices]).reshape(shape)
+        tensor = matrices_of(representation).reshape(shape)
         self._size = float(np.linalg.norm(self._basis.T @ tensor, axis=1).max(initial=0.0))
 
     @property

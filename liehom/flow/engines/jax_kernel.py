@@ -22,6 +22,8 @@ from liehom.flow.tracing.sweeps import evaluate_with_jax
 MAX_STORED_STEPS = 256
 """Steps are stored in blocks of powers of 2, at most this one, so that few functions are compiled."""
 CPU_OPERATION_COST = 16  # duration of an operation by JAX on the CPU, in units of an operation of machine code
+UNROLLED_OPERATIONS = 4000
+"""Operations of a step up to which they are compiled one by one, in a time that grows with their square."""
 MAX_JITTED = 64  # number of graphs whose jitted functions are cached
 _JITTED: dict[str, Any] = {}
 
@@ -177,7 +179,7 @@ class FastPath:
             graph = traced_step(
                 run.action, run.field, run.step, points[lanes], int(d), ends=(float(run.span[0]), float(run.span[1])),
                 nominal=o.nominal, limits=run.limits if o.dt is None else None,
-                args=args_of_lanes(run.field.args, run.shape, lanes), branching=False,
+                args=args_of_lanes(run.field.args, run.shape, lanes), branching=False, unrolled=UNROLLED_OPERATIONS,
             )  # fmt: skip
             rows = graph.constants(points[lanes])
             self.groups.append((lanes, JaxKernel(graph), np.array(rows) if rows else ()))

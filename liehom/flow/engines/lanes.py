@@ -33,8 +33,11 @@ ASSUMED_ITERATIONS = 5  # iterations that a loop in a step is assumed to make, f
 def operations(graph: StepGraph) -> int:
     """Approximate number of scalar operations of a step."""
     rows = needed(graph.outputs)
-    return len(rows) + ASSUMED_ITERATIONS * sum(
-        len(x.value.inside) for x in rows if x.op == "loop" and not x.value.guarded
+    tables = sum(len(x.value[0].factors) for x in rows if x.op == "table")
+    return (
+        len(rows)
+        + tables
+        + ASSUMED_ITERATIONS * sum(len(x.value.inside) for x in rows if x.op == "loop" and not x.value.guarded)
     )
 
 
@@ -66,6 +69,8 @@ def with_guard(graph: StepGraph, action: Action, dimension: int) -> StepGraph:
     generic = check_point(action.representation, rng.normal(size=(4, graph.size)))
     low = dimension < int(generic.max())
     tape: Any = graph.point[0].tape
+    if tape.least_loop is not None:  # an elimination is longer than such a step
+        return graph
     m: Any = Traced.inputs(tape, 0, graph.size)
     frame: Any = action.infinitesimal.right(m)
     size, certain, bounded = (m * m).sum(), Traced(tape, tape.false), Traced(tape, tape.true)

@@ -41,7 +41,7 @@ from liehom.flow.run.options import END
 from liehom.flow.run.records import bounds_of
 from liehom.flow.run.run import Run
 from liehom.flow.run.solution import Solution
-from liehom.flow.tracing.graph import LaneConstant
+from liehom.flow.tracing.graph import UNROLLED_OPERATIONS, LaneConstant
 from liehom.flow.tracing.loop import StepGraph
 from liehom.flow.tracing.machine import Kernel
 
@@ -149,7 +149,7 @@ class CodeStore:
                 return traced_step(
                     run.action, run.field, run.step, points, dimension, nominal=o.nominal, limits=limits,
                     ends=(float(run.span[0]), float(run.span[1])), stops=stops,
-                    args=args, lead=lead,
+                    args=args, lead=lead, unrolled=UNROLLED_OPERATIONS,
                 )  # fmt: skip
 
             raised = run.step.order > run.step.base_order and not o.nominal  # such steps have a clock

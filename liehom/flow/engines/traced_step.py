@@ -30,7 +30,7 @@ from liehom.flow.run.control import (
 from liehom.flow.run.records import LOST, bounds_of, earliness
 from liehom.flow.steps.step import Generator, LocalStep, Step
 from liehom.flow.tracing.array import Traced
-from liehom.flow.tracing.graph import Expr, Tape
+from liehom.flow.tracing.graph import LEAST_LOOP, Expr, LongGraphError, Tape
 from liehom.flow.tracing.loop import Sizes, StepGraph, while_loop
 
 # Parameters of a traced step: the numbers in args, as constants of the run or of a trajectory. A number is known by its
@@ -138,12 +138,23 @@ def traced_step(
     action: Action, field: GeneratorField, step: Step, points: Array, orbit_dimension: int, *, nominal: bool,
     ends: tuple[float, float] = (0.0, 0.0), limits: SizeLimits | None = None,
     stops: bool = False, args: Pytree = None, lead: int = 1, branching: bool = True,
+    unrolled: int | None = None,
 ) -> StepGraph:  # fmt: skip
-    """The graph of a step on orbits of one dimension; see `Tape` for `branching`."""
+    """The graph of a step on orbits of one dimension; of more than `unrolled` operations, with loops over entries.
+    See `Tape` for `branching`.
+    """
+
+    def traced(tape: Tape) -> StepGraph:
+        own = field if args is None else field.with_args(traced_args(tape, args, lead))
+        graph = _traced(tape, action, own, step, points, orbit_dimension, nominal, ends, limits, stops)
+        tape.most = None  # a check of the initial points is added later
+        return graph
+
     try:
-        tape = Tape(branching=branching)
-        field = field if args is None else field.with_args(traced_args(tape, args, lead))
-        return _traced(tape, action, field, step, points, orbit_dimension, nominal, ends, limits, stops)
+        try:
+            return traced(Tape(branching=branching, most=unrolled))
+        except LongGraphError:
+            return traced(Tape(least_loop=LEAST_LOOP))
     except TraceError as error:
         raise TraceError(f"{step!r} cannot be compiled for this field: {error}") from error
     except (LiehomError, TypeError, AttributeError, ValueError, IndexError) as error:

@@ -316,7 +316,7 @@ class InvariantSeries(TaylorSeries):
 
 def _flow(field: GeneratorField, m: Values, order: int, t: Values) -> Flow | AffineFlow:
     """The expansion of the flow: of a traced one in fewer operations, which wait less for each other, if psi allows."""
-    if isinstance(m, Traced) and not field.time_dependent:
+    if isinstance(m, Traced) and not field.time_dependent and m.tape.least_loop is None:
         before = m.tape.calls
         known = affine_flow(m, Traced(m.tape, field.psi(m)), field.infinitesimal, order)
         if known is not None:

@@ -12,7 +12,7 @@ from numpy.lib.mixins import NDArrayOperatorsMixin
 from numpy.typing import DTypeLike
 
 from liehom.base.errors import TraceError
-from liehom.base.typing import Key
+from liehom.base.typing import IntegerArray, Key
 from liehom.flow.tracing.graph import FOLDED, Expr, Tape
 
 # Tables of numpy's functions as operations on a tape, and linear equations by elimination on a tape.
@@ -261,6 +261,10 @@ class Traced(NDArrayOperatorsMixin):
         name = function.__name__
         if "linalg" in (function.__module__ or ""):
             name = f"linalg.{name}"
+        if name in PRODUCTS and self.tape.least_loop is not None and not set(options) - {"optimize"}:
+            result = _product(self.tape, name, args)
+            if result is not None:
+                return result
         if name in SPECIAL:
             return SPECIAL[name](self.tape, *args, **options)
         if name in STRUCTURAL:
@@ -349,6 +353,10 @@ def elementwise(tape: Tape, function: Callable[..., Expr], *arrays: Operand, num
 # -- ufuncs ------------------------------------------------------------------------------------------------
 def _ufunc(tape: Tape, ufunc: np.ufunc, method: str, inputs: tuple[Operand, ...], options: dict[str, Any]) -> Traced:
     name = ufunc.__name__
+    if tape.least_loop is not None and method == "__call__" and not options:
+        result = _in_loops(tape, name, inputs)
+        if result is not None:
+            return result
     if method == "reduce" and name in REDUCTIONS:
         options.setdefault("axis", 0)
         return getattr(np, REDUCTIONS[name])(*inputs, **options)
@@ -367,6 +375,83 @@ def _ufunc(tape: Tape, ufunc: np.ufunc, method: str, inputs: tuple[Operand, ...]
     if name in FOLDED:
         return elementwise(tape, lambda *a: tape.call(name, *a), *inputs, numbers=True)
     raise TraceError(f"np.{name} cannot be compiled")
+
+
+# -- operations that are recorded as loops over entries ----------------------------------------------------
+LABELS = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
+MAPPED = {
+    "add": "add", "subtract": "sub", "multiply": "mul", "divide": "div", "true_divide": "div", "negative": "neg",
+    "absolute": "abs", "fabs": "abs", "square": "mul",
+}  # fmt: skip
+SUBSCRIPTS = {
+    "matvec": "...ij,...j->...i", "vecmat": "...i,...ij->...j", "vecdot": "...i,...i->...", "outer": "i,j->ij",
+    "inner": "...i,ji->...j", "matmul": "...i,ij->...j", "row": "i,...ij->...j", "batch": "...ki,...ij->...kj",
+}  # fmt: skip
+PRODUCTS = frozenset(["matmul", "matvec", "vecmat", "vecdot", "dot", "inner", "outer", "einsum"])
+
+
+def _in_loops(tape: Tape, name: str, inputs: Sequence[Operand]) -> Traced | None:
+    """The result of a function of arrays that is recorded as one operation; None if it is not recorded so."""
+    if name in PRODUCTS:
+        return _product(tape, name, inputs)
+    operation = MAPPED.get(name) or (name if name in FOLDED and len(inputs) == 1 else None)
+    if operation is None:
+        return None
+    arrays = [_numbers(tape, x).entries for x in (*inputs, *inputs[: name == "square"])]
+    if operation == "div" and (arrays[1].size == 1 or all(x.constant and x.value != 0 for x in arrays[1].flat)):
+        operation, arrays[1] = "mul", elementwise(tape, lambda x: tape.div(tape.one, x), arrays[1]).entries
+    spread = np.broadcast_arrays(*arrays)
+    out = np.empty(spread[0].size, dtype=object)
+    out[:] = tape.mapped(operation, *[list(a.reshape(-1)) for a in spread])
+    return Traced(tape, out.reshape(spread[0].shape))
+
+
+def _product(tape: Tape, name: str, inputs: Sequence[Operand]) -> Traced | None:
+    """A product of arrays with sums over axes, at most two of them not constant; None for other products."""
+    subscripts = inputs[0] if name == "einsum" else None
+    arrays = [_numbers(tape, x).entries for x in (inputs[1:] if name == "einsum" else inputs)]
+    if name == "outer":
+        arrays = [a.reshape(-1) for a in arrays]
+    if name in ("matmul", "dot", "inner"):
+        first, second = (a.ndim for a in arrays)
+        if not first or not second or (name != "matmul" and second > 2):
+            return None
+        name = name if name == "inner" and second == 2 else "matmul" if second < 3 else "row" if first == 1 else "batch"
+        subscripts = "...i,i->..." if second == 1 else SUBSCRIPTS[name]
+    else:
+        subscripts = SUBSCRIPTS.get(name, subscripts)
+    varying = sum(any(not x.constant for x in a.flat) for a in arrays)
+    if not isinstance(subscripts, str) or "->" not in subscripts or varying > 2:
+        return None
+    left, out = subscripts.replace(" ", "").split("->")
+    parts, free = left.split(","), [x for x in LABELS if x not in subscripts]
+    dots = [max(a.ndim - len(part.replace("...", "")), 0) for a, part in zip(arrays, parts, strict=True)]
+    names = "".join(free[: max(dots)])
+    labels = [p.replace("...", names[len(names) - d :]) for p, d in zip(parts, dots, strict=True)]
+    return contracted(tape, arrays, labels, out.replace("...", names))
+
+
+def contracted(tape: Tape, arrays: Sequence[ExprArray], labels: Sequence[str], out: str) -> Traced:
+    """The sums of products of entries over the axes whose labels are not in `out`."""
+    sizes = dict[str, int]()
+    for array, names in zip(arrays, labels, strict=True):
+        for size, name in zip(array.shape, names, strict=True):
+            sizes[name] = max(size, sizes.get(name, 1)) if size else 0
+    order = out + "".join(x for x in sizes if x not in out)
+    grid = np.indices([sizes[x] for x in order]).reshape(len(order), int(np.prod([sizes[x] for x in order], dtype=int)))
+    places = dict(zip(order, grid, strict=True))
+
+    def flat(shape: Sequence[int], names: str) -> IntegerArray:
+        place = np.zeros(grid.shape[1], dtype=np.int64)
+        for size, name in zip(shape, names, strict=True):
+            place = place * size + (places[name] if size > 1 else 0)
+        return place
+
+    shape = tuple(sizes[x] for x in out)
+    operands = [(list(a.reshape(-1)), flat(a.shape, names)) for a, names in zip(arrays, labels, strict=True)]
+    entries = np.empty(int(np.prod(shape, dtype=int)), dtype=object)
+    entries[:] = tape.summed(len(entries), flat(shape, out), np.ones(1), *operands)
+    return Traced(tape, entries.reshape(shape))
 
 
 # -- functions that are not only structural ----------------------------------------------------------------
@@ -393,6 +478,11 @@ def _numbers(tape: Tape, a: Operand) -> Traced:
 
 def _sum(tape: Tape, a: Operand, axis: Axis = None, where: Operand = True, **options: Operand) -> Traced:
     known = {k: v for k, v in options.items() if k in ("keepdims", "initial")}
+    if tape.least_loop is not None and not any(known.values()):
+        entries = _numbers(tape, _where(tape, where, a, 0.0)).entries
+        axes = {k % entries.ndim for k in (range(entries.ndim) if axis is None else np.atleast_1d(axis))}
+        names = LABELS[: entries.ndim]
+        return contracted(tape, [entries], [names], "".join(x for k, x in enumerate(names) if k not in axes))
     return Traced(tape, np.sum(_numbers(tape, _where(tape, where, a, 0.0)).entries, axis=axis, **known))
 
 

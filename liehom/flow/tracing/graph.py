@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import cmath
+import hashlib
 import math
 import operator
 from collections.abc import Callable, Hashable, Sequence
@@ -14,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from liehom.base.errors import TraceError
+from liehom.base.typing import Array, IntegerArray
 
 # Expr, a tracer: a symbolic number or boolean on a tape, which records the operations on it; constants of a run.
 
@@ -257,6 +259,64 @@ class LaneConstant:
         return self.values
 
 
+# Operations on many numbers that are recorded, and compiled, as one loop: "map", an elementary operation on the entries
+# of arrays, and "table", a linear or bilinear map with constant coefficients.
+
+UNROLLED_OPERATIONS = 12_000
+"""Operations of a step up to which machine code has no loops over entries: it is faster, but compiles slowly."""
+LEAST_LOOP = 4
+"""Entries from which on an operation is a loop, if there are loops over entries."""
+
+
+@final
+class LongGraphError(Exception):
+    """A tape is full."""
+
+
+@final
+class Table:
+    """Coefficients of a map of lists: the sums of c x_i, or of c x_i y_j, over the terms of each row.
+
+    Attributes
+    ----------
+    rows : int
+        Number of results.
+    counts : array of shape (rows,)
+        Numbers of terms of the rows.
+    places : tuple of arrays of shape (terms,)
+        The positions i, or i and j, of each term, row by row.
+    factors : array of shape (terms,)
+        The numbers c.
+    """
+
+    __slots__ = ("counts", "digest", "factors", "places", "rows")
+
+    def __init__(self, rows: int, row: IntegerArray, places: Sequence[IntegerArray], factors: Array) -> None:
+        order = np.argsort(row, kind="stable")
+        self.rows, self.counts = rows, np.bincount(row, minlength=rows)
+        self.places, self.factors = tuple(p[order] for p in places), np.asarray(factors, dtype=np.float64)[order]
+        content = b"|".join(x.tobytes() for x in (self.counts, *self.places, self.factors))
+        self.digest = hashlib.sha256(content).hexdigest()
+
+    def padded(self) -> tuple[tuple[IntegerArray, ...], Array]:
+        """Places and factors as arrays (rows, largest number of terms), with factors 0 in shorter rows."""
+        here = np.arange(max(1, int(self.counts.max(initial=0)))) < self.counts[:, None]
+        places = tuple(np.zeros(here.shape, dtype=np.int64) for _ in self.places)
+        factors = np.zeros(here.shape)
+        for full, short in zip((*places, factors), (*self.places, self.factors), strict=True):
+            full[here] = short
+        return places, factors
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Table) and self.digest == other.digest
+
+    def __hash__(self) -> int:
+        return hash(self.digest)
+
+    def __repr__(self) -> str:
+        return f"<table of {self.rows} rows {self.digest}>"
+
+
 # Tape: a graph of scalar operations, recorded and simplified while numpy code computes with tracers.
 #
 # Equal operations are recorded once, operations on constants carried out, and products with 0 and 1, terms that cancel
@@ -290,9 +350,12 @@ class Tape:
     (True, True, 6.0)
     """
 
-    def __init__(self, *, branching: bool = True) -> None:
-        self.branching = branching
+    def __init__(self, *, branching: bool = True, most: int | None = None, least_loop: int | None = None) -> None:
+        """A tape on which `LongGraphError` is raised beyond a number of operations, or which records operations on
+        that many entries at least as one."""
+        self.branching = branching and least_loop is None
         self.recorded: list[Expr] = []
+        self.most, self.least_loop = most, least_loop
         self._known: dict[tuple[Hashable, ...], Expr] = {}
         self.zero, self.one = self.constant(0.0), self.constant(1.0)
         self.false, self.true = self.constant(False), self.constant(True)
@@ -361,6 +424,8 @@ class Tape:
         key = (op, *[a.index for a in args], value if extra is None else extra)
         known = self._known.get(key)
         if known is None:
+            if self.most is not None and len(self.recorded) >= self.most:
+                raise LongGraphError
             known = self._known[key] = Expr(self, op, args, value, len(self.recorded))
             self.recorded.append(known)
         return known
@@ -570,6 +635,49 @@ class Tape:
         operation = self._make(name, tuple(args), data)
         return [self._make("get", (operation,), i) for i in range(count)]
 
+    def mapped(self, name: str, *lists: Sequence[Expr]) -> list[Expr]:
+        """An operation on the entries of lists of one length; those that constants simplify are recorded alone."""
+        alone: Callable[..., Expr] = getattr(self, name, None) or (lambda *args: self.call(name, *args))
+        simple = np.array([_simplifies(name, entries) for entries in zip(*lists, strict=True)], dtype=bool)
+        rest = np.flatnonzero(~simple).tolist()
+        if self.least_loop is None or len(rest) < self.least_loop:
+            return [alone(*entries) for entries in zip(*lists, strict=True)]
+        loop = iter(self.block("map", [x[i] for x in lists for i in rest], len(rest), (name, len(rest))))
+        return [alone(*e) if s else next(loop) for e, s in zip(zip(*lists, strict=True), simple, strict=True)]
+
+    def summed(
+        self, rows: int, row: IntegerArray, factors: Array, *operands: tuple[Sequence[Expr], IntegerArray]
+    ) -> list[Expr]:
+        """The sums of c x_i or c x_i y_j over the terms of each row; operands are (numbers, place in each term)."""
+        factors, lists = np.broadcast_to(factors, row.shape), list[tuple[Sequence[Expr], IntegerArray]]()
+        for numbers, place in operands:
+            constant = np.array([x.constant for x in numbers], dtype=bool)
+            values = np.array([float(x.value) if x.constant else 1.0 for x in numbers])
+            factors = factors * values[place]
+            if not constant.all():
+                one = dict.fromkeys(np.flatnonzero(constant).tolist(), self.one)
+                lists.append(([one.get(i, x) for i, x in enumerate(numbers)] if one else numbers, place))
+        kept = factors != 0
+        row, factors, lists = row[kept], factors[kept], [(x, place[kept]) for x, place in lists]
+        alone = np.bincount(row, minlength=rows) < (2 if len(lists) == 1 else 1)  # rows of one number
+        if self.least_loop is None or len(row) < self.least_loop or not lists:
+            alone[:] = True
+        results = [self.zero] * rows
+        for term in np.flatnonzero(alone[row]):
+            product = self.constant(float(factors[term]))
+            for numbers, place in reversed(lists):
+                product = self.mul(product, numbers[place[term]])
+            results[row[term]] = self.add(results[row[term]], product)
+        others, rest = np.flatnonzero(~alone), ~alone[row]
+        if len(others):
+            used = [np.unique(place[rest], return_inverse=True) for _, place in lists]
+            places = [renumbered.reshape(-1) for _, renumbered in used]
+            args = [x[i] for (x, _), (some, _) in zip(lists, used, strict=True) for i in some]
+            table = Table(len(others), np.searchsorted(others, row[rest]), places, factors[rest])
+            for i, x in zip(others, self.block("table", args, len(others), (table, len(used[0][0]))), strict=True):
+                results[i] = x
+        return results
+
     # -- sums in which terms cancel ----------------------------------------------------------------------
     def _cancelled(self, a: Expr, b: Expr, sign: float) -> Expr | None:
         """a + sign b if terms of a and b cancel, else None."""
@@ -620,6 +728,12 @@ class Tape:
             for y, c in terms.items():
                 total[y] = total.get(y, 0.0) + factor * c
         return total
+
+
+def _simplifies(name: str, args: Sequence[Expr]) -> bool:
+    """Whether constants among the arguments of an operation leave no operation, or a change of sign."""
+    known = [x.value for x in args if x.constant]
+    return len(known) == len(args) or any(x == 0 or (name == "mul" and abs(x) == 1) for x in known)
 
 
 def _is_nonnegative(x: Expr) -> bool:

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import math
 import struct
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from itertools import count
-from typing import final
+from typing import TypeAlias, final
+
+import numpy as np
 
 from liehom.base.errors import TraceError
+from liehom.base.typing import Array, IntegerArray
 from liehom.flow.tracing.graph import BEND, LARGEST_EXPONENT, MIDDLE, Expr
 
 FLAGS = "contract"
@@ -38,6 +41,9 @@ class Writer:
         self.lines: list[str] = []
         self.declared: dict[str, str] = {}
         self.functions: dict[str, str] = {}
+        self.tables: dict[tuple[str, bytes], str] = {}
+        self.loops: dict[str, str] = {}  # names of functions by their texts
+        self.slots = 0
         self._count = 0
 
     def emit(self, text: str) -> str:
@@ -45,6 +51,40 @@ class Writer:
         self._count += 1
         self.lines.append(f"  %v{self._count} = {text}")
         return f"%v{self._count}"
+
+    def begun(self, name: str, by: str = "br label") -> str:
+        """Label of a basic block that begins here, to which the last one branches."""
+        self._count += 1
+        self.label = f"{name}{self._count}"
+        self.lines += [f"  {by} %{self.label}", f"{self.label}:"]
+        return self.label
+
+    def table(self, values: Array | IntegerArray) -> str:
+        """Name of a constant array of doubles or of 32-bit integers."""
+        kind = "double" if values.dtype == np.float64 else "i32"
+        key = kind, values.tobytes()
+        if key not in self.tables:
+            self.tables[key] = f"@table{len(self.tables)}"
+        return self.tables[key]
+
+    def constants(self) -> list[str]:
+        """Definitions of the constant arrays."""
+        return [
+            f"{name} = internal constant [{len(x)} x {kind}] ["
+            + ", ".join(f"{kind} {number(v) if kind == 'double' else v}" for v in x)
+            + "], align 64"
+            for (kind, content), name in self.tables.items()
+            if len(x := np.frombuffer(content, dtype=np.float64 if kind == "double" else np.int64).tolist())
+        ]
+
+    def reserve(self, count: int) -> int:
+        """Place of so many numbers of the lanes of a block in %memory, which the function must have."""
+        self.slots += count
+        return self.slots - count
+
+    def slot(self, place: str | int) -> str:
+        """Pointer to a number in %memory."""
+        return self.emit(f"getelementptr {self.vector}, ptr %memory, i64 {place}")
 
     def splat(self, x: float | bool) -> str:
         """Vector constant with x in all lanes."""
@@ -435,16 +475,26 @@ class Body:
         self._names: dict[int, str] = {}
         self._pairs: dict[tuple[str, int], tuple[str, str]] = {}
         self._loops: dict[int, list[str]] = {}
+        self._slots: dict[int, int] = {}  # places in memory
 
     def write(self, exprs: Sequence[Expr]) -> None:
         """Write operations; each must come after its arguments."""
         for x in exprs:
-            if x.index not in self._names:
+            if x.op in ("map", "table"):
+                if x.index not in self._slots:
+                    self._slots[x.index] = self._rolled(x)
+            elif x.op == "get" and x.args[0].op in ("map", "table"):
+                self._slots[x.index] = self._slots[x.args[0].index] + x.value
+            elif x.index not in self._names:
                 self._names[x.index] = self._written(x)
 
     def name(self, x: Expr) -> str:
         """Name of the value of an operation that was written."""
-        return self.writer.splat(x.value) if x.constant else self._names[x.index]
+        if x.constant:
+            return self.writer.splat(x.value)
+        if x.index in self._names:
+            return self._names[x.index]
+        return self.writer.emit(f"load {self.writer.vector}, ptr {self.writer.slot(self._slots[x.index])}, align 8")
 
     def _written(self, x: Expr) -> str:
         if x.constant:
@@ -457,22 +507,10 @@ class Body:
         match x.op:
             case "input":
                 return self._inputs[x.value]
-            case "add" | "sub" | "mul" | "div":
-                return w.binary("f" + x.op, *args)
-            case "sinq" | "cosq":
-                return self._pair("rotation", x.args[0], args[0])[x.op == "cosq"]
-            case "sin" | "cos":
-                return self._pair("turn", x.args[0], args[0])[x.op == "cos"]
-            case "sqrt" | "abs":
-                return w.intrinsic("fabs" if x.op == "abs" else "sqrt", *args)
-            case "coarse_log2":
-                return w.coarse_log2(args[0])
-            case "coarse_exp2":
-                return w.coarse_exp2(args[0])
+            case "sinq" | "cosq" | "sin" | "cos":
+                return self._pair(x.op, x.args[0], args[0])
             case "expv":
                 return call_exponential(w, x, args)
-            case "neg":
-                text = f"fneg {w.vector} {args[0]}"
             case "and":
                 text = f"and {w.mask} {args[0]}, {args[1]}"
             case "not":
@@ -484,11 +522,29 @@ class Body:
                 text = f"extractvalue {struct_of(w, len(x.args[0].args) - len(x.args[0].value))} {args[0]}, {x.value}"
             case op if op in COMPARED:
                 text = f"fcmp {COMPARED[op]} {w.vector} {args[0]}, {args[1]}"
-            case op if op in LIBM:
-                return w.library(LIBM[op], *args)
             case op:
-                raise TraceError(f"the operation {op} has no machine code here")
+                return self.elementary(op, args)
         return w.emit(text)
+
+    def elementary(self, op: str, args: Sequence[str]) -> str:
+        """Name of the value of an elementary operation."""
+        w = self.writer
+        match op:
+            case "add" | "sub" | "mul" | "div":
+                return w.binary("f" + op, *args)
+            case "neg":
+                return w.emit(f"fneg {w.vector} {args[0]}")
+            case "sqrt" | "abs":
+                return w.intrinsic("fabs" if op == "abs" else "sqrt", *args)
+            case "sinq" | "cosq" | "sin" | "cos":
+                return self._both(op, args[0])[op in ("cosq", "cos")]
+            case "coarse_log2":
+                return w.coarse_log2(args[0])
+            case "coarse_exp2":
+                return w.coarse_exp2(args[0])
+            case _ if op in LIBM:
+                return w.library(LIBM[op], *args)
+        raise TraceError(f"the operation {op} has no machine code here")
 
     def _iterated(self, x: Expr) -> str:
         """Write a loop as basic blocks; it ends when no lane wants another iteration."""
@@ -500,8 +556,10 @@ class Body:
         w.lines += [f"  {entry}", f"{name}:"]
         w.label, place = name, len(w.lines)  # the first lines need the names of the last
         self._names |= {v.index: f"%{name}.{i}" for i, v in enumerate(loop.variables)}
+        outside = dict(self._slots)
         self.write(loop.inside)
         new, end = [self.name(y) for y in loop.new], w.label
+        self._slots = outside  # what was stored in the loop may not be there after it
         kinds = [w.mask if v.boolean else w.vector for v in loop.variables]
         w.lines[place:place] = [
             f"  %{name}.k = phi i64 [0, %{before}], [%{name}.next, %{end}]",
@@ -521,13 +579,188 @@ class Body:
         self._loops[x.index] = new
         return ""
 
-    def _pair(self, function: str, x: Expr, name: str) -> tuple[str, str]:
-        """Names of both results of `rotation` or `turn`, computed together."""
-        key = function, x.index
+    def _pair(self, op: str, x: Expr, name: str) -> str:
+        """Name of a result of `rotation` or `turn`; both are computed together."""
+        key = "q" * op.endswith("q"), x.index
         if key not in self._pairs:
-            w = self.writer
-            (define_rotation if function == "rotation" else define_turn)(w)
-            kind = struct_of(w, 2)
-            pair = w.emit(f"call {kind} @{function}({w.vector} {name})")
-            self._pairs[key] = (w.emit(f"extractvalue {kind} {pair}, 0"), w.emit(f"extractvalue {kind} {pair}, 1"))
-        return self._pairs[key]
+            self._pairs[key] = self._both(op, name)
+        return self._pairs[key][op in ("cosq", "cos")]
+
+    def _both(self, op: str, name: str) -> tuple[str, str]:
+        """Names of both results of `rotation` or `turn`."""
+        w, function = self.writer, "rotation" if op.endswith("q") else "turn"
+        (define_rotation if function == "rotation" else define_turn)(w)
+        kind = struct_of(w, 2)
+        pair = w.emit(f"call {kind} @{function}({w.vector} {name})")
+        return w.emit(f"extractvalue {kind} {pair}, 0"), w.emit(f"extractvalue {kind} {pair}, 1")
+
+    # -- loops over entries, on numbers in memory ------------------------------------------------------------
+    def _rolled(self, x: Expr) -> int:
+        """Write the call of a function for a "map" or a "table"; the place of the results."""
+        w = self.writer
+        code = _LoopWriter(w)
+        if x.op == "map":
+            name, rows = x.value
+            lists = [x.args[i : i + rows] for i in range(0, len(x.args), rows)]
+            values = [self._operand(code, some, np.arange(rows)[:, None]) for some in lists]
+            elementary = Body(code.writer, {})
+            text = code.text(rows, 1, lambda r, q, p: elementary.elementary(name, [v(r, q, p) for v in values]))
+            return self._called(code, text, rows)
+        table, first = x.value
+        longest = int(table.counts.max())
+        uneven = longest * table.rows > PADDING * len(table.factors)
+        places, factors = (table.places, table.factors) if uneven else table.padded()
+        values = [
+            self._operand(code, some, place)
+            for some, place in zip((x.args[:first], x.args[first:]), places, strict=False)
+        ]
+        if not bool((factors == 1).all()):
+            values.append(code.numbers(factors))
+
+        def term(r: str, q: str, p: str) -> str:
+            product, *others = [v(r, q, p) for v in values]
+            for other in others:
+                product = code.writer.binary("fmul", product, other)
+            return product
+
+        text = code.text(table.rows, np.append(0, np.cumsum(table.counts)) if uneven else longest, term)
+        return self._called(code, text, table.rows)
+
+    def _called(self, code: _LoopWriter, text: str, rows: int) -> int:
+        """Write the call of a function, which is written once for all calls; the place of its results."""
+        w, out = self.writer, self.writer.reserve(rows)
+        if text not in w.loops:
+            w.loops[text] = f"@loop{len(w.loops)}"
+            w.functions[w.loops[text]] = text.replace("@loop", w.loops[text], 1)
+        starts = [f"ptr {w.slot(place)}" for place in (out, *code.starts)]
+        splats = [f"{w.vector} {w.splat(x)}" for x in code.splats]
+        w.lines.append(f"  call void {w.loops[text]}({', '.join([*starts, *splats])})")
+        return out
+
+    def _operand(self, code: _LoopWriter, some: Sequence[Expr], places: IntegerArray) -> Value:
+        """How the numbers at places (rows, terms) or (all terms,) of a list are loaded."""
+        if all(a.constant for a in some):
+            return code.numbers(np.array([a.value for a in some], dtype=np.float64)[places])
+        return code.loaded(np.array([self._slot(a) for a in some])[places])
+
+    def _slot(self, x: Expr) -> int:
+        """Place of a number in memory, to which it is stored if it is not there."""
+        if x.index not in self._slots:
+            w, name = self.writer, self.name(x)
+            place = w.reserve(1)
+            w.lines.append(f"  store {w.vector} {name}, ptr {w.slot(place)}, align 8")
+            self._slots[x.index] = place
+        return self._slots[x.index]
+
+
+PADDING = 1.5
+"""Largest ratio of the terms of a table to those it really has, if short rows are filled up with zeros."""
+ROWS_AT_ONCE = 4
+LEAST_VECTORS = 16
+"""Terms from which on LLVM may sum them in vectors, where a block has one lane."""
+Value: TypeAlias = Callable[[str, str, str], str]
+"""The name of a value, from the names of the row, of the term within it, and of the term within all."""
+
+
+@final
+class _LoopWriter:
+    """Writer of a function (results, operands, numbers) with loops over rows and their terms. The operands of its calls
+    are at different places in memory; the numbers are constants that are the same for all terms."""
+
+    def __init__(self, caller: Writer) -> None:
+        self.writer = w = Writer(caller.width)
+        w.tables, w.declared, w.functions, w.label = caller.tables, caller.declared, caller.functions, "entry"
+        self.starts: list[int] = []
+        self.splats: list[float] = []
+
+    def loaded(self, slots: IntegerArray) -> Value:
+        """How numbers at places (rows, terms) or (all terms,) in memory are loaded."""
+        w, start = self.writer, int(slots.min())
+        slots, base = slots - start, f"%a{len(self.starts)}"
+        self.starts.append(start)
+        first = int(slots.flat[0])
+        down = int(slots[1].flat[0]) - first if len(slots) > 1 else 0
+        along = int(slots[0, 1]) - first if slots.ndim == 2 and slots.shape[1] > 1 else 0
+        steps = first + down * np.arange(len(slots))[:, None] + along * np.arange(slots.shape[-1])
+        straight = slots.ndim == 2 and np.array_equal(slots, steps)
+
+        def value(r: str, q: str, p: str) -> str:
+            if straight:
+                place = w.emit(f"add i64 {w.emit(f'mul i64 {r}, {down}')}, {w.emit(f'mul i64 {q}, {along}')}")
+                place = w.emit(f"add i64 {place}, {first}") if first else place
+            else:
+                here = w.emit(f"getelementptr i32, ptr {w.table(slots.reshape(-1))}, i64 {p}")
+                place = w.emit(f"zext i32 {w.emit(f'load i32, ptr {here}')} to i64")
+            here = w.emit(f"getelementptr {w.vector}, ptr {base}, i64 {place}")
+            return w.emit(f"load {w.vector}, ptr {here}, align 8")
+
+        return value
+
+    def numbers(self, values: Array) -> Value:
+        """How constants are loaded, one for each term."""
+        w = self.writer
+        if bool((values == values.flat[0]).all()):
+            self.splats.append(float(values.flat[0]))
+            name = f"%c{len(self.splats) - 1}"
+            return lambda r, q, p: name
+
+        def value(r: str, q: str, p: str) -> str:
+            here = w.emit(f"getelementptr double, ptr {w.table(values.reshape(-1))}, i64 {p}")
+            return w.spread(w.emit(f"load double, ptr {here}, align 8"))
+
+        return value
+
+    def text(self, rows: int, terms: int | IntegerArray, term: Value) -> str:
+        """The function that stores the sums of each row, of so many terms, or of those from where an array says."""
+        w = self.writer
+        alone = not isinstance(terms, int) or (terms == 1 and w.width == 1)  # LLVM puts rows of one term into vectors
+        whole = 0 if alone else rows - rows % ROWS_AT_ONCE
+        for span, step in (((0, whole), ROWS_AT_ONCE), ((whole, rows), 1)):
+            if span[0] < span[1]:
+                self._rows(span, step, terms, term)
+        given = ["ptr noalias %out", *[f"ptr noalias readonly %a{i}" for i in range(len(self.starts))]]
+        given += [f"{w.vector} %c{i}" for i in range(len(self.splats))]
+        head = f"define internal void @loop({', '.join(given)}) noinline #0 {{\nentry:"
+        return "\n".join([head, *w.lines, "  ret void", "}"])
+
+    def _rows(self, span: tuple[int, int], step: int, terms: int | IntegerArray, term: Value) -> None:
+        """Write the loop over some rows, several of them at once."""
+        w, before = self.writer, self.writer.label
+        outer = w.begun("rows")
+        place, r = len(w.lines), f"%{outer}.r"
+        some = [w.emit(f"add i64 {r}, {i}") for i in range(step)]
+        if not isinstance(terms, int):
+            ends = [w.emit(f"getelementptr i32, ptr {w.table(terms)}, i64 {i}") for i in (r, w.emit(f"add i64 {r}, 1"))]
+            begin, end = (w.emit(f"zext i32 {w.emit(f'load i32, ptr {x}')} to i64") for x in ends)
+            totals = self._sums(begin, end, lambda q: [term(r, q, q)])
+        elif terms == 1:
+            totals = [term(i, "0", i) for i in some]
+        else:
+            first = [w.emit(f"mul i64 {i}, {terms}") for i in some]
+            each = list(zip(some, first, strict=True))
+            totals = self._sums("0", terms, lambda q: [term(i, q, w.emit(f"add i64 {a}, {q}")) for i, a in each])
+        for i, total in zip(some, totals, strict=True):
+            here = w.emit(f"getelementptr {w.vector}, ptr %out, i64 {i}")
+            w.lines.append(f"  store {w.vector} {total}, ptr {here}, align 8")
+        w.lines += [f"  {r}.next = add i64 {r}, {step}", f"  {r}.more = icmp slt i64 {r}.next, {span[1]}"]
+        w.lines.insert(place, f"  {r} = phi i64 [{span[0]}, %{before}], [{r}.next, %{w.label}]")
+        w.begun("after", f"br i1 {r}.more, label %{outer}, label")
+
+    def _sums(self, begin: str, end: str | int, terms: Callable[[str], list[str]]) -> list[str]:
+        """Write the loop over terms; the names of the sums, which LLVM may sum in another order."""
+        w, before = self.writer, self.writer.label
+        inner = w.begun("terms")
+        place, q = len(w.lines), f"%{inner}.q"
+        values = terms(q)
+        sums = [f"%{inner}.{i}" for i in range(len(values))]
+        w.lines[place:place] = [
+            f"  {q} = phi i64 [{begin}, %{before}], [{q}.next, %{inner}]",
+            *[f"  {s} = phi {w.vector} [{w.splat(0.0)}, %{before}], [{s}.next, %{inner}]" for s in sums],
+        ]
+        added = zip(sums, values, strict=True)
+        w.lines += [f"  {s}.next = fadd reassoc {FLAGS} {w.vector} {s}, {x}" for s, x in added]
+        w.lines += [f"  {q}.next = add i64 {q}, 1", f"  {q}.more = icmp slt i64 {q}.next, {end}"]
+        w.begun("summed", f"br i1 {q}.more, label %{inner}, label")
+        if isinstance(end, int) and end < LEAST_VECTORS:
+            w.lines[-2] += ", !llvm.loop !2"
+        return [f"{s}.next" for s in sums]

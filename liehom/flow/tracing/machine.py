@@ -103,7 +103,8 @@ def _compiled(llvm: ModuleType, machine: TargetMachine, text: str) -> bytes:
     module = llvm.parse_assembly(text)
     module.verify()
     options = llvm.PipelineTuningOptions(2)
-    options.slp_vectorization = options.loop_vectorization = options.loop_interleaving = options.loop_unrolling = False
+    options.slp_vectorization = options.loop_interleaving = options.loop_unrolling = False
+    options.loop_vectorization = "%memory" in text
     builder = llvm.create_pass_builder(machine, options)
     builder.getModulePassManager().run(module, builder)
     return bytes(machine.emit_object(module))
@@ -112,7 +113,7 @@ def _compiled(llvm: ModuleType, machine: TargetMachine, text: str) -> bytes:
 def _add_symbols(llvm: ModuleType) -> None:
     """Tell LLVM where the functions of the C library are; on Windows they are in its universal runtime."""
     library = ctypes.CDLL("ucrtbase" if sys.platform == "win32" else None)
-    for name in sorted({*LIBM.values(), "memset", "memcpy"}):
+    for name in sorted({*LIBM.values(), "memset", "memcpy", "malloc", "free"}):
         llvm.add_symbol(name, ctypes.cast(getattr(library, name), ctypes.c_void_p).value)
 
 

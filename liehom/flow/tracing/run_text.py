@@ -34,6 +34,8 @@ METADATA = """\
 attributes #0 = { nounwind "prefer-vector-width"="512" }
 !0 = !{!"branch_weights", i32 1, i32 1000}
 !1 = !{!"branch_weights", i32 1000, i32 1}
+!2 = distinct !{!2, !3}
+!3 = !{!"llvm.loop.vectorize.enable", i1 false}
 """
 ALIVE, FAILED, DONE = 1.0, 0.0, -1.0
 """What `alive` says of a lane."""
@@ -72,9 +74,8 @@ class _RunWriter:
         for part in (self._entry, self._prologue, self._loop, self._block_end):
             part()
         w = self.w
-        return "\n\n".join(
-            ["\n".join(dict.fromkeys(w.declared.values())), *w.functions.values(), "\n".join(w.lines), METADATA]
-        )
+        head = [*dict.fromkeys(w.declared.values()), *w.constants()]
+        return "\n\n".join(["\n".join(head), *w.functions.values(), "\n".join(w.lines), METADATA])
 
     def line(self, *texts: str) -> None:
         """Append instructions."""
@@ -93,6 +94,7 @@ class _RunWriter:
             kind = "ptr" if name in POINTERS else "double" if name in FLOATS else "i64"
             here = self.w.emit(f"getelementptr i64, ptr %argument, i64 {place}")
             self.line(f"%{name} = load {kind}, ptr {here}, align 8")
+        self.entry = len(self.w.lines)
         self.line(
             "%keeps = icmp ne ptr %path, null",
             "%some = icmp slt i64 %first, %last",
@@ -113,7 +115,22 @@ class _RunWriter:
             "br i1 %again, label %next, label %done",
         )
         self.label("done")
+        if self.w.slots:
+            self.w.lines.append("  call void @free(ptr %own)")
+            self._own_memory()
         self.w.lines += ["  ret void", "}"]
+
+    def _own_memory(self) -> None:
+        """Allocate %memory for the numbers of loops over entries, from a multiple of 64 bytes on."""
+        w = self.w
+        w.declared |= {"malloc": "declare noalias ptr @malloc(i64)", "free": "declare void @free(ptr)"}
+        w.lines[self.entry : self.entry] = [
+            f"  %own = call ptr @malloc(i64 {64 + 8 * w.width * w.slots})",
+            "  %own.place = ptrtoint ptr %own to i64",
+            "  %own.rest = sub i64 0, %own.place",
+            "  %own.gap = and i64 %own.rest, 63",
+            "  %memory = getelementptr i8, ptr %own, i64 %own.gap",
+        ]
 
     def _place(self, base: str, row: str | int) -> str:
         """Pointer to the lanes of this block in a row of an array (rows, lanes)."""

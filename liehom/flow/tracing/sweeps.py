@@ -309,12 +309,50 @@ def evaluate_with_jax(
         raise TraceError('engine="jax" needs JAX: pip install jax') from None
     values: dict[int, Any] = {}
     for x in needed(outputs):
-        values[x.index] = _value(jnp, x, values, inputs, differentiable)
-    return [values[x.index] for x in outputs]
+        if not _of_loop(x):
+            values[x.index] = _value(jnp, x, values, inputs, differentiable)
+    return [_known(x, values) for x in outputs]
+
+
+def _of_loop(x: Expr) -> bool:
+    """Whether a number is one of the entries of an array."""
+    return x.op == "get" and x.args[0].op in ("map", "table")
 
 
 def _known(x: Expr, values: Mapping[int, JaxArray]) -> Any:
+    if _of_loop(x):
+        return values[x.args[0].index][x.value]
     return x.value if x.constant else values[x.index]
+
+
+def _array(jnp: ModuleType, some: Sequence[Expr], values: Mapping[int, JaxArray]) -> Any:
+    """Numbers of a graph as one array, along its first axis."""
+    if all(x.constant for x in some):
+        return np.array([x.value for x in some])
+    if _of_loop(some[0]) and all(_of_loop(x) and x.args[0] is some[0].args[0] for x in some):
+        whole, places = values[some[0].args[0].index], [x.value for x in some]
+        return whole if places == list(range(len(whole))) else whole[np.array(places)]
+    return jnp.stack(jnp.broadcast_arrays(*[jnp.asarray(_known(x, values), dtype=float) for x in some]))
+
+
+def _entries(jnp: ModuleType, x: Expr, values: Mapping[int, JaxArray]) -> Any:
+    """The results of a "map" or a "table", along the first axis of an array."""
+    if x.op == "map":
+        name, size = x.value
+        lists = [_array(jnp, x.args[i : i + size], values) for i in range(0, len(x.args), size)]
+        axes = max(a.ndim for a in lists)
+        return _applied(jnp, name, [a.reshape(size, *[1] * (axes - a.ndim), *a.shape[1:]) for a in lists])
+    table, first = x.value
+    places, factors = table.padded()
+    some = x.args[:first], x.args[first:]
+    lists = [_array(jnp, part, values) for part, _ in zip(some, places, strict=False)]
+    if len(lists) == 1 and bool((places[0] == np.arange(first)).all()):
+        return jnp.tensordot(factors, lists[0], 1)
+    axes = max(a.ndim for a in lists) - 1
+    total: Any = factors.reshape(*factors.shape, *[1] * axes)
+    for a, place in zip(lists, places, strict=True):
+        total = total * a[place].reshape(*place.shape, *[1] * (axes + 1 - a.ndim), *a.shape[1:])
+    return total.sum(axis=1)
 
 
 def _value(
@@ -324,20 +362,27 @@ def _value(
         return x.value
     if x.op == "input":
         return inputs[x.value]
+    if x.op in ("map", "table"):
+        return _entries(jnp, x, values)
+    if x.op == "loop":
+        return _iterated(jnp, x, values, differentiable)
     args = [_known(a, values) for a in x.args]
     if x.op == "get":
         return args[0][x.value]
-    if x.op == "loop":
-        return _iterated(jnp, x, values, differentiable)
     if x.op == "expv":
         return _exponential(jnp, x.value, args)
-    if x.op in ("sinq", "cosq"):
-        return _rotation(jnp, args[0], int(x.op == "sinq"))
-    if x.op in COARSE:
-        return COARSE[x.op](args[0], jnp)
-    function = OPERATORS.get(x.op) or getattr(jnp, _NAMES.get(x.op, x.op), None)
+    return _applied(jnp, x.op, args)
+
+
+def _applied(jnp: ModuleType, op: str, args: Sequence[JaxArray]) -> Any:
+    """The value of an elementary operation."""
+    if op in ("sinq", "cosq"):
+        return _rotation(jnp, args[0], int(op == "sinq"))
+    if op in COARSE:
+        return COARSE[op](args[0], jnp)
+    function = OPERATORS.get(op) or getattr(jnp, _NAMES.get(op, op), None)
     if function is None:
-        raise TraceError(f"the operation {x.op} is not known to JAX")
+        raise TraceError(f"the operation {op} is not known to JAX")
     return function(*args)
 
 
@@ -377,7 +422,8 @@ def _iterated(jnp: ModuleType, x: Expr, values: Mapping[int, JaxArray], differen
     def body(state: list[JaxArray]) -> tuple[list[JaxArray], JaxArray]:
         known = dict(values) | {v.index: s for v, s in zip(loop.variables, state, strict=True)}
         for y in loop.inside:
-            known[y.index] = _value(jnp, y, known, {}, differentiable)
+            if not _of_loop(y):
+                known[y.index] = _value(jnp, y, known, {}, differentiable)
         new = [jnp.broadcast_to(_known(y, known), shape) for y in loop.new]
         return new, jnp.any(_known(loop.again, known))
 
