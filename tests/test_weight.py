@@ -16,6 +16,13 @@ WEIGHTS: tuple[tuple[int, int, int, str], ...] = (
         "the check of adaptive steps and one rule for the same psi, for those who integrate pulses or resume runs; "
         "closures of Pauli sums, for quantum control; bounds for measured data; names and matrices that people write",
     ),
+    (
+        89200,
+        46986,
+        296,
+        "calls in a loop over spans, landings by invariants, Python and loops from traces, for those who integrate often "
+        "or large systems; the generic range condition and the invariant geometry of G/H, for those who have a pair",
+    ),
 )
 """Lines, statements (of Python, without docstrings) and files of Python and stubs, the latest last, and for whom."""
 SLACK = 0.005  # what has become lighter by more than this share is written down

@@ -251,7 +251,7 @@ def invariant_complex_structures(pair: Pair) -> tuple[Matrix, ...]:
 
 
 def almost_complex_structures(split: ReductiveSplit) -> list[ExactMatrix]:
-    """All J in End_h(V) with J^2 = -1, if the isotropy summands are inequivalent: signs on each; else undecided."""
+    """All J in End_h(V) with J^2 = -1, up to signs on inequivalent isotropy summands; undecided for equivalent ones."""
     d, field = split.dimension, split.field
     maps = commutant(split.isotropy, d, field)
     if any(a @ b != b @ a for a, b in combinations(maps, 2)):

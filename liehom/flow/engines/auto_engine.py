@@ -1,6 +1,6 @@
 """AutoEngine: steps by numpy at first, then by Python or machine code written from the trace, as soon as that pays.
 
-What was done before decides, by counts and not by the clock, so that a script gives the same numbers each time:
+The steps made before decide, by their number and not by their time, so that a script gives the same numbers again:
 
 * The first steps are those of numpy. A trace costs about as much as `NUMPY_STEPS` of them.
 * Then a few trajectories are stepped by straight-line Python (`PythonKernel`), if the step can be traced.
@@ -94,7 +94,7 @@ class AutoEngine:
         return self._machine.again(t_span, y0, options, args)
 
     def kind(self, start: Values) -> type[Kernel] | None:
-        """What code to make for initial points (..., N); None as long as numpy makes their steps."""
+        """The kind of code for initial points (..., N); None as long as numpy makes their steps."""
         *lead, n = np.shape(start)
         few, size = int(np.prod(lead, dtype=int)) <= FEW, n * self._generators
 

@@ -396,7 +396,7 @@ def _of_coordinates(n: int, function: TrajectoryConstant) -> TrajectoryConstant:
 
 
 def events_key(functions: object) -> Hashable:
-    """What two event functions share that are made at one place from the same values."""
+    """A key that event functions share if they are made at one place from the same values."""
     if isinstance(functions, list | tuple):
         return tuple(map(events_key, functions))
     marks = tuple(repr(getattr(functions, name, None)) for name in ("direction", "terminal"))
@@ -487,7 +487,7 @@ class PlannedEvents:
     def __call__(
         self, path: tuple[Array, Array, Array], values: Mapping[str, Any], span: tuple[float, float]
     ) -> EventLog | None:
-        """The events of paths: times (L, j + 1), points (L, N, j + 1), sizes (L, j); None if one may end a run."""
+        """The events of paths with times (L, j + 1), points (L, N, j + 1) and sizes (L, j); None if one may end a run."""
         (t, y, sizes), events, n = path, self.events, self.n
         lanes, k = t.shape
         values = {**values, "length": abs(span[1] - span[0])}

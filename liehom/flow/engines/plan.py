@@ -42,7 +42,7 @@ from liehom.flow.steps.step import Generator, Step
 from liehom.flow.tracing.graph import LaneConstant
 from liehom.flow.tracing.machine import PLACES, Kernel, padded
 
-# What a call gives, as numbers of Python and arrays of floats. Lists, tuples, integers and numbers of numpy are the
+# The numbers of a call, as numbers of Python and arrays of floats. Lists, tuples, integers and numbers of numpy are the
 # same call. Whatever is unusual, or not right, has no such form: `Propagator` looks at it closely.
 
 KINDS = frozenset([float, int, np.float64, np.float32, np.int64, np.int32])
@@ -175,7 +175,7 @@ def serves_all_points(problem: Problem, step: Step, dimension: int) -> bool:
 
 
 def frame_key(action: Action) -> Hashable:
-    """What a trace depends on of the tight frame of an action."""
+    """The part of the tight frame of an action that a trace depends on."""
     tight = action.tight_frame
     return None if tight is None else (tight.symmetric, round(float(tight.isotropy), 9))
 
@@ -217,7 +217,7 @@ TROUBLE = frozenset(["unkept", "failed", "near", "short", "conservation_short", 
 
 
 class Piece(NamedTuple):
-    """What a kernel has made of some lanes: rows of their path, and numbers of their states."""
+    """The result of a kernel for some lanes: rows of their path, and numbers of their states."""
 
     lanes: slice
     path: Array | None  # (j, N + 2, L): points, times and signed sizes, without gaps
@@ -225,7 +225,7 @@ class Piece(NamedTuple):
 
 
 class Task(NamedTuple):
-    """What a call asks of a kernel."""
+    """The order that a call gives to a kernel."""
 
     call: Call
     points: Array  # (L, N)

@@ -132,7 +132,7 @@ def _as_written(
 def _by_products(
     x: list[list[Expr]], rows: Sequence[Quadratic], products: Iterable[tuple[int, ...]], k: int, factor: float
 ) -> list[Expr]:
-    """The same, from products of coordinates."""
+    """The sums (N,) of the recurrence, from products of coordinates."""
     tape: Any = x[0][0].tape
     known = {e: _product(x, k, *e) for e in products}
     return [_tree([c * factor * known[e] for e, c in row.items() if e in known] or [tape.zero]) for row in rows]

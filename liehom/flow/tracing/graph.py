@@ -64,7 +64,7 @@ def coarse_exp2(x: Number, xp: ModuleType = np) -> Number:
 
 
 def _coarse_log2(x: float) -> float:
-    """The same for a float."""
+    """`coarse_log2` of a float."""
     mantissa, exponent = math.frexp(x)
     return exponent + (2.0 * mantissa - 2.0) + MIDDLE if x else MIDDLE - 1023.0
 

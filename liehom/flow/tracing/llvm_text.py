@@ -42,7 +42,7 @@ class Writer:
         self.declared: dict[str, str] = {}
         self.functions: dict[str, str] = {}
         self.tables: dict[tuple[str, bytes], str] = {}
-        self.loops: dict[str, str] = {}  # names of functions by their texts
+        self.loops: dict[str, str] = {}  # names of functions by their code
         self.slots = 0
         self._count = 0
 
@@ -78,7 +78,7 @@ class Writer:
         ]
 
     def reserve(self, count: int) -> int:
-        """Place of so many numbers of the lanes of a block in %memory, which the function must have."""
+        """Place of `count` numbers of the lanes of a block in %memory, which the function must have."""
         self.slots += count
         return self.slots - count
 
@@ -711,7 +711,7 @@ class _LoopWriter:
         return value
 
     def text(self, rows: int, terms: int | IntegerArray, term: Value) -> str:
-        """The function that stores the sums of each row, of so many terms, or of those from where an array says."""
+        """The function that stores the sums of each row, of `terms` terms, or of those from where an array says."""
         w = self.writer
         alone = not isinstance(terms, int) or (terms == 1 and w.width == 1)  # LLVM puts rows of one term into vectors
         whole = 0 if alone else rows - rows % ROWS_AT_ONCE

@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from liehom.base.errors import TraceError
-from liehom.flow.tracing.graph import BEND, COARSE, FOLDED, LARGEST_EXPONENT, MIDDLE, OPERATORS, Expr, needed
+from liehom.flow.tracing.graph import COARSE, FOLDED, OPERATORS, Expr, needed
 from liehom.flow.tracing.llvm_text import LEVELS, LIBM, LONG_SERIES_REACH, MAX_NORM, rotation_series
 from liehom.flow.tracing.machine import Kernel
 from liehom.flow.tracing.run_text import DONE, FAILED, Constant
@@ -176,27 +176,12 @@ def {name}(q):
  return {far}"""
 
 
-def _coarse_log2(x: float) -> float:
-    mantissa, exponent = math.frexp(x)
-    return exponent + (2.0 * mantissa - 2.0) + MIDDLE if x else MIDDLE - 1023.0
-
-
-def _coarse_exp2(x: float) -> float:
-    x = min(max(x, -LARGEST_EXPONENT), LARGEST_EXPONENT)
-    whole = math.floor(x)
-    rest = x - whole
-    return math.ldexp(1.0 + rest * ((1.0 - BEND) + BEND * rest), whole)
-
-
-COARSE_PYTHON = {"coarse_log2": _coarse_log2, "coarse_exp2": _coarse_exp2}  # those of COARSE, on Python's floats
-
-
 def _spaces() -> tuple[dict[str, Any], dict[str, Any]]:
-    """The functions that texts name, on Python's floats and on numpy's numbers."""
+    """The functions that the code names, on Python's floats and on numpy's numbers."""
     names = {"inf": math.inf, "nan": math.nan, "abs": abs}
     in_python = {name: getattr(math, LIBM.get(name, name)) for name in (*LIBM, "sqrt", "ceil")}
     in_numpy = {name: getattr(np, {"pow": "power"}.get(name, name)) for name in (*LIBM, "sqrt", "ceil")}
-    return {**names, **in_python, **COARSE_PYTHON}, {**names, **in_numpy, **COARSE}
+    return {**names, **in_python, **{name: FOLDED[name] for name in COARSE}}, {**names, **in_numpy, **COARSE}
 
 
 @final
