@@ -487,7 +487,7 @@ class PlannedEvents:
     def __call__(
         self, path: tuple[Array, Array, Array], values: Mapping[str, Any], span: tuple[float, float]
     ) -> EventLog | None:
-        """The events of paths with times (L, j + 1), points (L, N, j + 1) and sizes (L, j); None if one may end a run."""
+        """The events on paths: times (L, j + 1), points (L, N, j + 1) and sizes (L, j). None if one may end a run."""
         (t, y, sizes), events, n = path, self.events, self.n
         lanes, k = t.shape
         values = {**values, "length": abs(span[1] - span[0])}
