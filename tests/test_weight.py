@@ -21,7 +21,7 @@ WEIGHTS: tuple[tuple[int, int, int, str], ...] = (
         46986,
         296,
         "calls in a loop over spans, landings by invariants, Python and loops from traces, for those who integrate "
-        "often or large systems; the generic range condition and the invariant geometry of G/H, for those who have a pair",
+        "often or large systems; the generic range condition and the invariant geometry of G/H, for pairs",
     ),
 )
 """Lines, statements (of Python, without docstrings) and files of Python and stubs, the latest last, and for whom."""
