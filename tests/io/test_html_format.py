@@ -34,6 +34,7 @@ SAMPLES: dict[str, Callable[[], object]] = {
     ),
     "Certificate": lambda: lh.decide_fullness(lh.pair("so(4)/so(3)")).certificate,
     "Classification": lambda: lh.classify(lh.pair("so(6)/u(3)")),
+    "RangeClassification": lambda: lh.classify_range(lh.pair("so(6)/u(3)")),
     "FailureReport": lambda: lh.failure_report(lh.pair("so(3,1)/so(2,1)")),
     "RootSystem": lambda: lh.root_system("B2"),
     "RealForm": lambda: lh.RealForm.of_name("so(4,1)"),

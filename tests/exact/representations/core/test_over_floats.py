@@ -112,7 +112,21 @@ def agree(found: Any, expected: Any) -> None:
 
 def test_every_public_method_is_in_a_table() -> None:
     assert public(lh.Representation) <= ANSWERS.keys() | REFUSED.keys()
-    assert public(lh.Pair) <= OF_PAIRS.keys() | {"is_primitive"}
+    assert public(lh.Pair) <= OF_PAIRS.keys() | {"is_primitive", "is_naturally_reductive"} | GEOMETRY.keys()
+
+
+GEOMETRY: dict[str, tuple[Any, ...]] = {
+    "reductive_complement": (), "is_reductive": (), "is_symmetric": (),
+    "invariant_metrics": (), "invariant_forms": (2,), "invariant_cohomology": (), "invariant_complex_structures": (),
+    "invariant_symplectic_forms": (), "invariant_connections": (),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", GEOMETRY)
+def test_the_geometry_of_a_pair_over_floats_is_left_to_exact_numbers(name: str) -> None:
+    floating = lh.Pair(PAIR.algebra.over(lh.RR), PAIR.subalgebra.basis.to_numpy().tolist())
+    with pytest.raises(lh.LiehomError, match="rationalize"):
+        getattr(floating, name)(*GEOMETRY[name])
 
 
 def test_whether_a_pair_over_floats_is_primitive_is_left_to_exact_numbers() -> None:
