@@ -131,8 +131,12 @@ def verify_range(pair: PairData, certificate: Certificate | Mapping[str, Any]) -
     --------
     >>> import liehom as lh
     >>> pair = lh.pair("so(3,1)/so(2,1)")
-    >>> verify_range(pair, Certificate("generic", {"eta": ["0", "0", "0", "0", "0", "1"]}))
+    >>> verify_range(pair, Certificate("generic", {"eta": ["1", "0", "0", "0", "0", "0"]}))
     True
+    >>> verify_range(pair, Certificate("generic", {"eta": ["0", "0", "0", "0", "0", "1"]}))
+    Traceback (most recent call last):
+    ...
+    liehom.base.errors.CertificateError: rank: [h, eta] + R eta has rank 0 of 3 in g/h
     """
     certificate = certificate.copied() if isinstance(certificate, Certificate) else Certificate.from_json(certificate)
     checked = check_pair(pair)
