@@ -36,14 +36,18 @@ def python() -> AutoEngine:
     return engine
 
 
-def both(field: Any, span: Any, y0: Any, **options: Any) -> tuple[Any, Any]:
+def both(field: Any, span: Any, y0: Any, *, kind: str = "python", **options: Any) -> tuple[Any, Any]:
     plain = lh.integrate(field, span, y0, engine="numpy", **options)
     made = lh.integrate(field, span, y0, engine=python(), **options)
-    assert plain.report.engine == "numpy" and made.report.engine == "python"
+    assert plain.report.engine == "numpy" and made.report.engine == kind
     for entry in ("order", "failed_steps", "near_steps", "looks", "cuts", "step"):
         assert getattr(made.report, entry) == getattr(plain.report, entry)
     assert np.array_equal(made.n_steps, plain.n_steps)
     return plain, made
+
+
+# of more than 12,000 operations, which are recorded as loops over entries, and those have no Python code
+LONG = [("RK4 to 5", "S^4"), ("RK4 to 5", "CP^2")]
 
 
 @pytest.mark.filterwarnings("ignore::liehom.OrderWarning")
@@ -52,7 +56,8 @@ def both(field: Any, span: Any, y0: Any, **options: Any) -> tuple[Any, Any]:
 def test_python_is_numpy_on_the_spaces(name: str, step: str) -> None:
     space = spaces.make(name)
     span, options = (0.0, 0.4), {"step": STEPS[step], "dt": 0.05}
-    assert_same(*both(a_field(name, space), span, np.asarray(space.starts)[:2], **options))
+    kind = "numpy" if (step, name) in LONG else "python"
+    assert_same(*both(a_field(name, space), span, np.asarray(space.starts)[:2], kind=kind, **options))
 
 
 OPTIONS: list[dict[str, Any]] = [
