@@ -260,13 +260,7 @@ def classify(pair: Pair, verdict: Verdict | None = None) -> Classification:
     ...
     liehom.base.errors.NotFullError: only full pairs are classified, and this one is not full: the isotropy ...
     """
-    if not isinstance(pair, Pair):
-        raise InputError(f"expected a Pair, got {displayed(pair)}; liehom.pair reads names, liehom.load files")
-    if not isinstance(pair.field, ExactField):
-        raise UndecidedError(
-            f"only exact pairs are classified, and this one is over {pair.field.name}: make it exact by "
-            "liehom.rationalize(pair, max_denominator=...)"
-        )
+    exact_field_of(pair)
     verdict = decide_fullness(pair) if verdict is None else verdict
     if verdict.pair != pair:
         raise InputError("the verdict is about a different pair; leave it out to have this pair decided")
@@ -276,3 +270,15 @@ def classify(pair: Pair, verdict: Verdict | None = None) -> Classification:
     classification = Classification(key, ideal.subspace)
     classification.row  # noqa: B018  # raises if the key is in no row
     return classification
+
+
+def exact_field_of(pair: object) -> ExactField:
+    """The field of a pair, which can be classified if it is exact; raises an error for anything else."""
+    if not isinstance(pair, Pair):
+        raise InputError(f"expected a Pair, got {displayed(pair)}; liehom.pair reads names, liehom.load files")
+    if not isinstance(pair.field, ExactField):
+        raise UndecidedError(
+            f"only exact pairs are classified, and this one is over {pair.field.name}: make it exact by "
+            "liehom.rationalize(pair, max_denominator=...)"
+        )
+    return pair.field

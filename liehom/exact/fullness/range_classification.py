@@ -12,20 +12,20 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, final
 
-from liehom.base.errors import CertificateError, FieldError, InputError, InternalError, UndecidedError, displayed
+from liehom.base.errors import CertificateError, FieldError, InternalError, UndecidedError
 from liehom.base.objects import Displayed
 from liehom.exact.fullness.certificate import Certificate
 from liehom.exact.fullness.checker.verify import verify_range
 from liehom.exact.fullness.classification import Classification, effective_pair, isotropy_kernel, key_of, largest_ideal
 from liehom.exact.fullness.classification_rows import rows
-from liehom.exact.fullness.decide import decide_fullness
+from liehom.exact.fullness.decide import decide_fullness, exact_field_of
 from liehom.exact.fullness.isotropy_action import TracelessIsotropyAction
 from liehom.exact.orbits.cone import central_candidates, counted_open_orbits, invariant_degree
 from liehom.exact.orbits.range import RankProof, largest_rank
 from liehom.exact.representations.core.pair import Pair
 from liehom.exact.representations.invariants.intertwiners import invariant_forms
 from liehom.exact.representations.invariants.irreducibility import combination, evaluated, trace_radical
-from liehom.exact.scalars.exact_field import ExactField, ExactMatrix, as_exact
+from liehom.exact.scalars.exact_field import ExactMatrix, as_exact
 from liehom.exact.scalars.polynomial import Polynomial
 
 
@@ -52,22 +52,16 @@ def classify_range(pair: Pair) -> RangeClassification:
     >>> classify_range(lh.pair("sl(3)/so(3)"))
     <not generic: sl(3)/so(3)>
     """
-    if not isinstance(pair, Pair):
-        raise InputError(f"expected a Pair, got {displayed(pair)}; liehom.pair reads names, liehom.load files")
-    if not isinstance(pair.field, ExactField):
-        raise UndecidedError(
-            f"only exact pairs are classified, and this one is over {pair.field.name}: make it exact by "
-            "liehom.rationalize(pair, max_denominator=...)"
-        )
+    field = exact_field_of(pair)
     if pair.dimension == 0:
-        zero = [pair.field.zero] * pair.algebra.dimension
-        return RangeClassification(pair, Certificate.over(pair.field, "generic", eta=zero))
+        zero = [field.zero] * pair.algebra.dimension
+        return RangeClassification(pair, Certificate.over(field, "generic", eta=zero))
     try:
         best, proof = largest_rank(pair, enough=pair.dimension)
     except UndecidedError as error:
         return RangeClassification(pair, None, str(error))
     if proof is None:
-        return RangeClassification(pair, Certificate.over(pair.field, "generic", eta=best.psi))
+        return RangeClassification(pair, Certificate.over(field, "generic", eta=best.psi))
     return RangeClassification(pair, _certificate(pair, proof))
 
 

@@ -19,7 +19,7 @@ from typing import Any, final
 
 import numpy as np
 
-from liehom.base.errors import TraceError
+from liehom.base.errors import LiehomError, TraceError
 from liehom.base.typing import Pytree, Values
 from liehom.flow.action.field import GeneratorField
 from liehom.flow.action.fingerprint import Watch
@@ -141,8 +141,8 @@ class _Ladder:
                 compiled = CompiledRun(self._problem, run, store, most=STEPS_AT_ONCE)
                 for lanes, key, graph in compiled.groups:
                     store.kernel(key, graph, len(lanes))
-        except Exception:  # noqa: BLE001 - of code of the user, which was not written for tracers
-            return False
+        except (LiehomError, ArithmeticError, LookupError, RuntimeError, ImportError, OSError):
+            return False  # no others: those of psi on tracers are `TraceError`, and a fault of the library is seen
         self._compiled[kind] = compiled
         return True
 
@@ -172,5 +172,8 @@ def _repeats(field: GeneratorField, n: int) -> bool:
     """Whether psi gives the same expressions when it is traced twice: not if it draws random numbers."""
     tape = Tape()
     m, t = Traced.inputs(tape, 0, n), Traced(tape, tape.input(n))
-    first, second = (Traced(tape, field.psi(m, t)).entries.tolist() for _ in range(2))
+    try:
+        first, second = (Traced(tape, field.psi(m, t)).entries.tolist() for _ in range(2))
+    except Exception:  # noqa: BLE001 - of the user's function, which was not written for tracers
+        return False
     return bool(first == second)

@@ -11,6 +11,7 @@ import pytest
 import liehom as lh
 from liehom.flow.engines import auto_engine
 from liehom.flow.engines.auto_engine import FEW, PYTHON_STEPS, AutoEngine
+from liehom.flow.engines.llvm_engine import CodeStore
 from liehom.flow.steps.step import OneExponential
 from liehom.flow.tracing.machine import Kernel
 from tests.flow.engines.test_compiled import BODY, SPACES, START, STEPS, a_field, assert_same, sphere
@@ -198,6 +199,29 @@ def test_steps_and_events_of_users_and_checkpoints_stay_with_numpy(options: Any,
     made = lh.integrate(BODY, (0, 10), START, **options)
     assert made.report.engine == "numpy"
     assert np.array_equal(made.y, lh.integrate(BODY, (0, 10), START, engine="numpy", **options).y)
+
+
+class OwnError(Exception):
+    """None of those of Python."""
+
+
+def test_what_psi_raises_on_tracers_leaves_the_run_to_numpy() -> None:
+    def psi(m: Any) -> Any:
+        if type(m).__name__ == "Traced":
+            raise OwnError
+        return BODY.psi(m)
+
+    sol = lh.integrate(lh.GeneratorField(BODY.representation, psi), (0, 10), START, dt=0.1, step="rk4")
+    assert sol.report.engine == "numpy" and sol.success
+
+
+def test_a_fault_of_the_library_is_not_taken_for_one_of_psi(monkeypatch: pytest.MonkeyPatch) -> None:
+    def faulty(*_: Any) -> None:
+        raise AttributeError("a name that is not there")
+
+    monkeypatch.setattr(CodeStore, "kernel", faulty)
+    with pytest.raises(AttributeError, match="not there"):
+        lh.integrate(BODY, (0, 10), START, dt=0.1, step="rk4")
 
 
 def test_extended_precision_and_noise_stay_with_numpy() -> None:
