@@ -8,7 +8,8 @@ psi(m, t) at further times within it, at most `gap` apart. Where
 
 the size is cut, and the same series is looked at again. For series of analytic fields the left side is a few times the
 allowed error at most. A method with stages is not compared with a series. Its steps are so short that the times at
-which it asks psi anyway are at most `gap` apart, or a point moves by at most its own size for psi(m).
+which it asks psi anyway are at most `gap` apart. For psi(m) the gap is the time in which a point moves by `MAX_WAY` |m|.
+A series of points is accurate over about |m| only, and is looked at once.
 
 No method of finitely many looks sees everything: what lies between two of them stays unseen. `max_step` is how users
 say what they know of it.
@@ -30,6 +31,7 @@ from liehom.flow.tracing.array import Traced
 from liehom.flow.tracing.loop import while_loop
 
 LOOKS = 128  # looks across the span, by default for psi(m, t); for psi(m) there is one at the end of each step
+MAX_WAY = 0.22  # of a point between two looks at psi(m), in units of |m|
 OFFSET = 0.382  # added to their number, so that looks do not fall on the times at which a periodic pulse vanishes
 ALLOWED_RESIDUAL = 30.0  # of a series, in units of the error that is allowed
 SMALLEST_CUT, LARGEST_CUT = 0.1, 0.8  # bounds of the factor by which a size is cut

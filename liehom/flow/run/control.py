@@ -15,7 +15,7 @@ from liehom.base.errors import ConvergenceError
 from liehom.base.typing import Array, BooleanArray, Real, Values
 from liehom.flow.action.field import GeneratorField
 from liehom.flow.action.space import Action
-from liehom.flow.run.check import Seen, checked, is_unbounded
+from liehom.flow.run.check import LOOKS, MAX_WAY, Seen, checked, is_unbounded
 from liehom.flow.series.arrays import namespace
 from liehom.flow.steps.expansion import flow_series, step_series
 from liehom.flow.steps.step import (
@@ -123,7 +123,6 @@ def fitted(local: LocalStep, h: Array, left: Array, *, halve: bool) -> tuple[Arr
 # advance. The rules run on arrays, and on the tracers of compiled steps (`Values`); results are of the same kind.
 
 FIRST_STEP_FRACTION = 0.01  # the first step of an embedded pair, in units of |m| / |X|
-MAX_PAIR_MOVE = 1.0  # with an embedded pair, the largest way of a point in a step for psi(m), in units of |m|
 MAX_PAIR_GROWTH = 5.0  # with an embedded pair, the largest ratio of the next step size to the last one
 MAX_SHRINK = 0.2  # the smallest ratio of the next step size to the last one
 ERROR_TERMS = 2  # number of Taylor coefficients of the error that are computed
@@ -200,7 +199,7 @@ def tried_size(
     embedded = local.estimate_order is not None
     if embedded and limits.gap is not None:
         if is_unbounded(limits.gap):
-            moves = min(moves, MAX_PAIR_MOVE)
+            moves = min(moves, MAX_WAY / local.widest_gap)
         else:
             bound = xp.minimum(bound, limits.gap / local.widest_gap)
     if moves < np.inf:
@@ -212,11 +211,14 @@ def tried_size(
         if limits.gap is not None and psi.field.time_dependent:
             # terms far below the allowed error are not compared with |X| h, else steps go to 0 at a time when X does
             speed = xp.maximum(speed, allowed / bound)
+        gap: Any = limits.gap
+        if is_unbounded(gap) and local.velocity:  # an exponential may turn a point many times in a step
+            gap = xp.maximum(left / LOOKS, MAX_WAY * over_sites(length(m), axes) / speed)
         h = known_size(action, local, m, order, StepLimits(allowed, speed, bound, axes))
         if limits.gap is not None:
             h, looks, cuts, seen = checked(
                 looked_at, local, m, t, h, allowed, left,
-                direction=limits.direction, gap=limits.gap, tiny=limits.tiny, axes=axes,
+                direction=limits.direction, gap=gap, tiny=limits.tiny, axes=axes,
             )  # fmt: skip
     return Tried(h, is_large_enough(h, limits.tiny, left), looks, cuts, seen)
 
