@@ -702,8 +702,19 @@ class Conserving(Step):
         frame = action.isotropy_frame(m, psi.orbit_dimension)
         factor = 0.5 if self.one_exponential else 1.0
         chi = Conservation(action, known.integral, frame, m, psi.field.psi(m, time), factor)
-        target = self._traced_target(known.integral, m) if type(m) is Traced else known.target
+        if type(m) is Traced:
+            target = self._traced_target(known.integral, m)
+        else:  # of some trajectories of a run, if they have initial points of their own
+            own = psi.start is None or psi.start is known.start
+            target = known.target if own else self._target(known.integral, psi.start)
         return ConservingStep(local, chi, target, known.n, one_exponential=self.one_exponential, linear=self.linear)
+
+    def _target(self, integral: FirstIntegral, start: Values) -> Values | None:
+        """The values of F at which trajectories from these points aim; None for F(m)."""
+        if self.aim == "previous":
+            return None
+        value = integral(start)
+        return value if self._value is None else _aimed_at(self._value, value)
 
     def _traced_target(self, integral: FirstIntegral, m: Traced) -> Values | None:
         """Target of a traced step, a number of each trajectory; None for F(m)."""
@@ -735,7 +746,7 @@ class _Begun:
     """Data of a conserving step for a run: the first integral, checked, its target value, and n."""
 
     def __init__(self, step: Conserving, action: Action, psi: Generator, m: Values, t: Values) -> None:
-        start = m if psi.start is None else psi.start
+        self.start, start = psi.start, m if psi.start is None else psi.start
         self.integral = FirstIntegral(step._source, action.representation.size)
         self.n: int | None = None
         self.target: Any = None
@@ -743,9 +754,8 @@ class _Begun:
             return
         bound = step.order + 1
         self.integral.check(flow_series(psi.field, start, bound, t), bound)
-        if step.aim == "start" and (psi.start is not None or step._value is not None):
-            value = self.integral(start)
-            self.target = value if step._value is None else _aimed_at(step._value, value)
+        if psi.start is not None or step._value is not None:
+            self.target = step._target(self.integral, start)
         self._explore(step, action, psi, start, t)
 
     def _explore(self, step: Conserving, action: Action, psi: Generator, start: Values, t: Values) -> None:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import liehom as lh
-from liehom.base.errors import TraceError
+from liehom.base.errors import InputError, TraceError
 from liehom.flow.steps.conserving import Conserving
 from liehom.studies.rigid_body_updates import ExactOrbit
 from tests.flow.engines.test_compiled import EPS, ULPS, both, cache, sphere
@@ -41,6 +41,29 @@ def test_points_values_and_reports_agree(base: str, aim: str) -> None:
     assert [getattr(first, x) for x in names] == [getattr(second, x) for x in names]
     assert second.left_steps == 60 and 1 <= second.iterations <= first.iterations + 2
     assert second.defect <= 4 * EPS
+
+
+@pytest.mark.parametrize("engine", ["numpy", "llvm", "jax"])
+@pytest.mark.parametrize("base", [lh.Heun(), lh.Corrected("euler", 2), lh.RKMK("rk45")], ids=str)
+def test_events_of_some_trajectories_of_an_ensemble(base: lh.Step, engine: str) -> None:
+    """Steps with a zero in them are made again for the trajectories that have one: each has its own energy."""
+
+    def height(t: Any, y: Any) -> Any:
+        return y[..., 0]
+
+    height.terminal = 2  # type: ignore[attr-defined]
+    step, points = Conserving(base, energy), sphere(7)
+    options: dict[str, Any] = {"step": step, "dt": 0.1, "events": height, "engine": engine}
+    if engine == "jax":
+        with pytest.raises(InputError, match="events"):
+            lh.integrate(BODY, (0, 10), points, **options)
+        return
+    together = lh.integrate(BODY, (0, 10), points, **options)
+    assert len({len(t) for t in together.t_events[0]}) > 1
+    for i, point in enumerate(points):
+        alone = lh.integrate(BODY, (0, 10), point, **{**options, "engine": "numpy"})
+        np.testing.assert_allclose(together.t_events[0][i], alone.t_events[0], rtol=0, atol=1e-12)
+        assert np.abs(energy(together.y_events[0][i]) - energy(point)).max(initial=0.0) <= 32 * EPS
 
 
 def test_without_the_correction_it_drifts() -> None:
