@@ -83,6 +83,9 @@ def slope(manifold: str, step: lh.Step, engine: str) -> tuple[float, list[float]
     return float(np.log2(result[-2] / result[-1])), result
 
 
+# On H^3 two of the eight equations of backward Euler of size T have no solution that belongs to the step: the solutions
+# of x = s F(x) from x = 0 turn back at s = 0.84 and at 0.55.
+@pytest.mark.filterwarnings("ignore:status -1")
 @pytest.mark.parametrize("engine", ["numpy", "llvm"])
 @pytest.mark.parametrize("manifold", MANIFOLDS)
 @pytest.mark.parametrize("name", NAMES)

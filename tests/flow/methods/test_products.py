@@ -119,7 +119,9 @@ def test_corrected_order(base: lh.Step, order: int) -> None:
 )
 @pytest.mark.parametrize(("base", "order"), CORRECTED, ids=name_of)
 def test_corrected_order_everywhere(base: lh.Step, order: int, space: str, exponential: str, timed: bool) -> None:
-    assert abs(corrected_slope(base, order, 32, space, exponential, timed=timed) - order) < 0.15
+    # Crouch-Grossman shows its order late: on Sym112 with Cayley 5.21, 5.11, 5.05 from 32, 64, 128 steps
+    count = 64 if isinstance(base, CrouchGrossman3) else 32
+    assert abs(corrected_slope(base, order, count, space, exponential, timed=timed) - order) < 0.15
 
 
 @pytest.mark.parametrize("order", [3, 4])
