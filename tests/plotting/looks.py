@@ -227,6 +227,7 @@ A, B = (0.6, 0.0, 0.8), (0.0, 0.8, -0.6)
 DAMPED = lh.GeneratorField(
     lh.adjoint(lh.so(3)), lambda m: -m / [1.0, 2.0, 3.0] - 0.2 * np.cross(m, m / [1.0, 2.0, 3.0])
 )
+CUBIC = "m0**3 + m1**3/2 + m2**3/3 + m0*m1/4"
 ENERGY = "m0**2/2 + m1**2/4 + m2**2/6"
 TILTED = "(m0 + m1/2)**2/2 + (m1 - m2/5)**2/4 + (m2 - m0/3)**2/6"  # saddles are not on the grid
 HYPERBOLIC = lh.defining(lh.so(2, 1))
@@ -245,6 +246,7 @@ PICTURES: dict[str, Callable[[], Any]] = {
     "brackets sl(2)": lambda: P.plot_bracket_table(lh.sl(2)),
     "brackets gl(3) dark": lambda: dark(lambda: P.plot_bracket_table(lh.gl(3))),
     "brackets heisenberg(2)": lambda: P.plot_bracket_table(lh.heisenberg(2)),
+    "brackets heisenberg(14)": lambda: P.plot_bracket_table(lh.heisenberg(14)),
     "roots A1": lambda: P.plot_root_system("A1"),
     "roots G2": lambda: P.plot_root_system("G2"),
     "roots B3": lambda: P.plot_root_system("B3"),
@@ -284,7 +286,8 @@ PICTURES: dict[str, Callable[[], Any]] = {
     ),
     "portrait of a body": lambda: P.plot_phase_portrait(TILTED, solid(elev=20, azim=50), levels=3),
     "portrait of a large body, dark": lambda: dark(lambda: P.plot_phase_portrait(TILTED, radius=2.5)),
-    "portrait with damping": lambda: P.plot_phase_portrait(DAMPED),
+    "portrait with damping": lambda: P.plot_phase_portrait(DAMPED, radius=1.5),
+    "portrait of a cubic": lambda: P.plot_phase_portrait(CUBIC, levels=1),
     "portrait in the plane": lambda: P.plot_phase_portrait("m2**2 + 7*m0/10", new_figure(3, 3).add_subplot()),
     "portrait of a shear": lambda: P.plot_phase_portrait("m2**2", levels=2),
     "drift": lambda: P.plot_energy_drift(

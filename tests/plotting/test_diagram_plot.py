@@ -203,3 +203,8 @@ def test_titles_of_narrow_diagrams_are_not_cut() -> None:
         texts = [artist for artist in ax.get_children() if isinstance(artist, Text)]
         assert any("real rank" in text.get_text() for text in texts)
         assert all(text.get_window_extent().x1 <= ax.figure.bbox.x1 for text in texts if text.get_text())
+
+
+def test_labels_of_long_diagrams_are_small() -> None:
+    for rank, size in ((10, 9.0), (40, 20 * 12 / 40.4), (80, 4.0)):
+        assert [text.get_fontsize() for text in plot_dynkin(f"A{rank}").texts] == pytest.approx([size] * rank)
