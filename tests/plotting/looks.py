@@ -124,16 +124,18 @@ def described(axes: Any) -> list[str]:
         lines += of_legend(legend)
     for ax in figure.axes:
         window = [*ax.get_xlim(), *ax.get_ylim(), *(ax.get_zlim() if ax.name == "3d" else ())]
+        on = getattr(ax, "_axis3don", ax.axison)
         lines.append(
             f"axes {ax.name} {ax.get_xscale()} {ax.get_yscale()} aspect {ax.get_aspect()} {ax.get_adjustable()} "
-            f"anchor {ax.get_anchor()} {'on' if ax.axison else 'off'} window {numbers(window)}"
+            f"anchor {ax.get_anchor()} {'on' if on else 'off'} window {numbers(window)}"
         )
         if ax.name == "3d":
             lines.append(
                 f"view {ax.elev:g} {ax.azim:g} {ax._focal_length} box {numbers(ax._box_aspect)} {ax.computed_zorder}"
             )
         lines += [f"title {where} {ax.get_title(where)!r}" for where in ("left", "center") if ax.get_title(where)]
-        if ax.axison:
+        if on:
+            lines += [f"panes {color(ax.xaxis.pane.get_facecolor())}"] if ax.name == "3d" else []
             lines += [of_axis(axis) for axis in ax._axis_map.values()]
             lines.append(f"spines {' '.join(sorted(name for name in ax.spines if ax.spines[name].get_visible()))}")
         things: list[str] = []
@@ -238,6 +240,7 @@ PICTURES: dict[str, Callable[[], Any]] = {
     "dynkin G2 labels dark": lambda: dark(lambda: P.plot_dynkin("G2", labels=("x", 7))),
     "dynkin D4 + A19": lambda: P.plot_dynkin("D4 + A19"),
     "satake su(3,2)": lambda: P.plot_satake("su(3,2)"),
+    "satake su(5,1)": lambda: P.plot_satake("su(5,1)"),
     "satake e6(-14)": lambda: P.plot_satake("e6(-14)"),
     "satake so(8,C)": lambda: P.plot_satake("so(8,C)"),
     "satake so(5,3)": lambda: P.plot_satake("so(5,3)"),

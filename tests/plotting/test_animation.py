@@ -158,3 +158,12 @@ def test_the_number_of_frames_and_their_rate_are_bounded() -> None:
     for seconds, fps in ((1, 101), (50.01, 100), (0.019, 100), (1, -2)):
         with pytest.raises(InputError, match="from 2 to 5000"):
             _frames(seconds, fps)
+
+
+def test_frames_are_evenly_spread_over_the_time() -> None:
+    animation = animate_trajectory(SOL, seconds=0.5, fps=10, ax=small())
+    for frame in range(5):
+        dot = animation._func(frame)[2]  # type: ignore[attr-defined]
+        angle = 3 * frame / 4
+        assert np.allclose(np.array(dot.get_data(), dtype=float)[:, 0], [np.cos(angle), np.sin(angle)], atol=1e-5)
+    animation._draw_was_started = True  # type: ignore[attr-defined]

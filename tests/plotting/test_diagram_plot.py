@@ -208,3 +208,7 @@ def test_titles_of_narrow_diagrams_are_not_cut() -> None:
 def test_labels_of_long_diagrams_are_small() -> None:
     for rank, size in ((10, 9.0), (40, 20 * 12 / 40.4), (80, 4.0)):
         assert [text.get_fontsize() for text in plot_dynkin(f"A{rank}").texts] == pytest.approx([size] * rank)
+
+
+def test_the_algebra_0_has_no_nodes() -> None:
+    assert node_places("0").shape == (0, 2)

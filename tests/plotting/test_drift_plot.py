@@ -1,5 +1,6 @@
 """Errors of first integrals over time: what is drawn is |F(y(t)) - F(y(t0))|, on whose axes, in which scale."""
 
+import dataclasses
 from typing import Any
 
 import numpy as np
@@ -150,3 +151,11 @@ def test_markers_are_evenly_spread_over_the_axis(logarithmic: bool) -> None:
 
 def test_short_curves_are_marked_at_their_ends() -> None:
     assert [_places(np.array(t), 0.5, False) for t in ([], [3.0], [3.0, 4.0])] == [[], [0], [1]]
+
+
+def test_points_that_are_not_finite_are_left_out() -> None:
+    sol = run()
+    y = sol.y.copy()
+    y[0, -3:] = np.inf
+    t, error = curve(plot_energy_drift(dataclasses.replace(sol, y=y), ENERGY))
+    assert np.array_equal(t, sol.t[1:-3]) and np.isfinite(error).all()

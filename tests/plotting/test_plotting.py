@@ -473,6 +473,7 @@ def test_times_of_trajectories_that_end_early_cover_the_longest() -> None:
     for times, first, last in ((ahead, 0.0, 2.0), (5 - ahead, 5.0, 3.0)):
         fine = trajectory_plot._times(times)
         assert (fine[0], fine[-1], len(fine)) == (first, last, 400)
+    assert len(trajectory_plot._times(np.arange(300.0)[None])) == 2 * 299 + 1
     same = trajectory_plot._times(np.array([[0.0, 1.0, 3.0]] * 2))
     assert np.allclose(same, np.r_[np.linspace(0, 1, 133, endpoint=False), np.linspace(1, 3, 134)])
 
@@ -507,3 +508,9 @@ def test_a_picture_within_a_page_has_no_background_and_no_warning() -> None:
     assert text.startswith("<svg ") and "\U00013000" in text
     background = text[text.index('id="part-patch_1"') :]
     assert "opacity: 0" in background[: background.index("/>")]
+
+
+def test_colors_reach_from_the_largest_value_to_its_negative() -> None:
+    for size in (1e-3, 50.0):
+        made = lh.integrate(rotation(9), (0, 1), size * np.eye(9)[0], dt=0.1)
+        assert np.allclose(plot_trajectory(made).axes[0].collections[0].get_clim(), (-size, size))
