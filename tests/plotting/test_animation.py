@@ -167,3 +167,12 @@ def test_frames_are_evenly_spread_over_the_time() -> None:
         angle = 3 * frame / 4
         assert np.allclose(np.array(dot.get_data(), dtype=float)[:, 0], [np.cos(angle), np.sin(angle)], atol=1e-5)
     animation._draw_was_started = True  # type: ignore[attr-defined]
+
+
+def test_progress_is_shown_on_a_terminal(tmp_path: Path, capsys: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    shown = []
+    for terminal in (False, True):
+        monkeypatch.setattr("sys.stderr.isatty", lambda answer=terminal: answer)
+        animate_trajectory(SOL, tmp_path / "orbit.gif", seconds=0.3, fps=10, ax=small())
+        shown.append(capsys.readouterr().err)
+    assert not shown[0] and "drawing" in shown[1] and "100%" in shown[1]

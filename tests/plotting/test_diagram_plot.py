@@ -212,3 +212,9 @@ def test_labels_of_long_diagrams_are_small() -> None:
 
 def test_the_algebra_0_has_no_nodes() -> None:
     assert node_places("0").shape == (0, 2)
+
+
+@pytest.mark.parametrize(("dimension", "size"), [(10, 9.0), (30, 200 / 30), (60, 5.0)])
+def test_names_of_many_basis_elements_are_small(dimension, size):
+    ax = plot_bracket_table(lh.LieAlgebra({}, dimension=dimension))
+    assert [label.get_fontsize() for label in ax.get_yticklabels()] == pytest.approx([size] * dimension)

@@ -14,7 +14,7 @@ import pytest
 import liehom as lh
 from liehom.base.errors import FormatError, InputError
 from liehom.flow.convergence.orders import ConvergenceTable
-from liehom.plotting.canvas import DARK_COLOURS, inline_svg, new_figure, style
+from liehom.plotting.canvas import COLOURS, DARK_COLOURS, current_colours, inline_svg, new_figure, style
 from liehom.plotting.error_plot import draw_floor, plot_convergence
 from liehom.plotting.trajectory_plot import curves_of, plot_trajectory
 
@@ -514,3 +514,18 @@ def test_colors_reach_from_the_largest_value_to_its_negative() -> None:
     for size in (1e-3, 50.0):
         made = lh.integrate(rotation(9), (0, 1), size * np.eye(9)[0], dt=0.1)
         assert np.allclose(plot_trajectory(made).axes[0].collections[0].get_clim(), (-size, size))
+
+
+@pytest.mark.parametrize("count", [7, 8])
+def test_up_to_seven_step_sizes_are_ticks(count: int) -> None:
+    sizes = tuple(0.3 / (k + 1) for k in range(count))
+    errors = tuple(h**2 for h in sizes)
+    made = table(dts=sizes, orbit_errors=errors, trajectory_errors=errors, floors=(1e-14,) * count)
+    labels = [text.get_text() for text in plot_convergence(made).axes[0].get_xticklabels()]
+    assert (labels == [f"{h:.4g}" for h in sorted(sizes)]) is (count == 7)
+
+
+def test_gray_text_is_not_that_of_a_dark_page() -> None:
+    for gray, colours in (("0.5", COLOURS), ("0.51", DARK_COLOURS)):
+        with matplotlib.rc_context({"text.color": gray}):
+            assert current_colours() == colours

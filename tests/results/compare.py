@@ -103,7 +103,7 @@ INTENDED = (
         for key in ("y", "nfev")
     }
     | {
-        f"cards: [so of diag(1, -1, 5, 7)] [{key}] ": "of many Cartan involutions over QQ the search meets another first"
+        f"cards: [so of diag(1, -1, 5, 7)] [{key}] ": "the search meets another involution first"
         for key in ("Cartan involution", "maximal compact subalgebra")
     }
     | {
