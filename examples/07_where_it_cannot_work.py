@@ -1,5 +1,7 @@
 """Symmetric matrices under conjugation: with eigenvalues 1, 1, 2 isotropy suffices, with 1, 2, 3 there is none."""
 
+import warnings
+
 import numpy as np
 
 import liehom as lh
@@ -16,7 +18,10 @@ step = lh.Corrected(lh.Euler(), order=4)
 for eigenvalues in ([1, 1, 2], [1, 2, 3]):
     turn = np.linalg.qr(np.array([[2.0, 1, 0], [1, 3, 1], [0, 1, 4]]))[0]
     start = lh.representations.symmetric_to_vector((turn @ np.diag(eigenvalues) @ turn.T).round(15))
-    sol = lh.integrate(field, (0, 1), start, step=step, dt=0.05)
+    with warnings.catch_warnings(record=True) as told:  # a run that does not keep its order says so
+        warnings.simplefilter("always")
+        sol = lh.integrate(field, (0, 1), start, step=step, dt=0.05)
+    assert [w.category for w in told] == ([] if eigenvalues == [1, 1, 2] else [lh.OrderWarning])
     print(f"\neigenvalues {eigenvalues}\n{sol.report}")
     # the orbit is kept in any case: the eigenvalues do not move
     assert np.allclose(np.linalg.eigvalsh(matrix(sol.y[:, -1])), eigenvalues, atol=1e-13)

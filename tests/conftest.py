@@ -2,6 +2,7 @@
 
 import os
 import signal
+import time
 from collections.abc import Generator
 from pathlib import Path
 
@@ -19,7 +20,7 @@ for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--slow", action="store_true", help="also run the tests marked slow, and every table whole")
     parser.addoption(
-        "--shard", metavar="K", type=int, choices=range(sampling.SHARDS), help="also run shard K of what is left out"
+        "--shard", metavar="K", type=int, help="also run shard K of what is left out, for a minute at most"
     )
     parser.addoption("--record", metavar="FILE", type=Path, help="write what each test costs and calls")
 
@@ -68,8 +69,11 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> Generator[None]:
     slow = {call.id for call in calls if whole_test or any(mark.name == "slow" for mark in call.marks)}
     ids = [call.id for call in calls if call.id not in slow]
     chosen = {ids[i] for i in sampling.kept(module, name, ids, tables)}
-    chosen |= {case for case in slow if sampling.in_shard(module, f"{name}[{case}]", tables)}
-    left = [call for call in calls if call.id in chosen]
+    more = {c.id for c in calls if c.id not in chosen and sampling.in_shard(module, f"{name}[{c.id}]", tables)}
+    for call in calls:
+        if call.id in more:
+            call.marks.append(pytest.mark.shard.mark)
+    left = [call for call in calls if call.id in chosen | more]
     if not left:  # a test without cases would run without its parameters
         calls[0].marks.append(pytest.mark.slow.mark)
     calls[:] = left or calls[:1]
@@ -82,7 +86,21 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     if not runs_whole(config):
         tables = sampling.table()
         slow |= {item for item in items if item.name in tables.get(sampling.module_of(item.path), {}).get("slow", ())}
-        slow = {item for item in slow if not sampling.in_shard(sampling.module_of(item.path), item.name, tables)}
-    if slow:
-        config.hook.pytest_deselected(items=[item for item in items if item in slow])
-        items[:] = [item for item in items if item not in slow]
+        for item in slow:
+            if sampling.in_shard(sampling.module_of(item.path), item.name, tables):
+                item.add_marker(pytest.mark.shard)
+    shard = {item for item in items if item.get_closest_marker("shard")}
+    places = sampling.shuffled({item.nodeid for item in shard})
+    if left_out := slow - shard:
+        config.hook.pytest_deselected(items=[item for item in items if item in left_out])
+    items[:] = sorted((i for i in items if i not in left_out), key=lambda item: places.get(item.nodeid, -1))
+
+
+shard_began: list[float] = []
+
+
+def pytest_runtest_setup(item: pytest.Item) -> None:
+    if item.get_closest_marker("shard"):
+        shard_began.append(time.monotonic())
+        if shard_began[-1] - shard_began[0] > sampling.SHARD_SECONDS:
+            pytest.skip(f"the {sampling.SHARD_SECONDS:.0f} s of the shard are over")

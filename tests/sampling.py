@@ -4,13 +4,15 @@
 are so expensive that the default leaves them out. The sample is the same in every run: case i comes at the place of the
 fractional part of i times the golden ratio, so that any number of cases is spread over all axes of a table.
 
-What the default leaves out is dealt to shards by its name. `--shard K` adds shard K to the default run. Tests of more
-than a minute, `alone` in `samples.toml`, are in no shard.
+What the default leaves out is dealt to shards by its name. `--shard K` runs shard K modulo 64 after the default run, in
+an order that depends on K, for a minute at most: what a short minute leaves over comes first for another K. Tests of
+more than a minute, `alone` in `samples.toml`, are in no shard.
 """
 
+import random
 import tomllib
 import zlib
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -20,6 +22,7 @@ ROOT = FILE.parent.parent
 GOLDEN_RATIO = 0.6180339887498949
 EXAMPLES_PER_DEFAULT_EXAMPLE = 4  # hypothesis draws this many times more examples with `--slow`
 SHARDS = 64  # one of them beside the default run is about a minute of processor time
+SHARD_SECONDS = 60.0  # after which a process begins no further test of a shard
 
 whole = False  # set by conftest before any test module is imported
 shard: int | None = None  # so is this
@@ -46,11 +49,16 @@ def in_shard(module: str, name: str, tables: dict[str, dict[str, Any]]) -> bool:
     alone = tables.get(module, {}).get("alone", ())
     if shard is None or name in alone or name.partition("[")[0] in alone:
         return False
-    return zlib.crc32(f"{module}::{name}".encode()) % SHARDS == shard
+    return zlib.crc32(f"{module}::{name}".encode()) % SHARDS == shard % SHARDS
+
+
+def shuffled(names: Collection[str]) -> dict[str, int]:
+    """The place of each test of the shard, which differs from one number of a shard to another."""
+    return {name: place for place, name in enumerate(random.Random(shard).sample(sorted(names), len(names)))}
 
 
 def kept(module: str, test: str, ids: Sequence[str], tables: dict[str, dict[str, Any]]) -> list[int]:
-    """The indices of the cases of a parametrized test that run by default, or with this shard.
+    """The indices of the cases of a parametrized test that run by default.
 
     Raises
     ------
@@ -64,8 +72,7 @@ def kept(module: str, test: str, ids: Sequence[str], tables: dict[str, dict[str,
         raise ValueError(f"{FILE.name}: {module} has no case {sorted(missing)}")
     left = [i for i, name in enumerate(names) if name not in slow]
     sample = spread(len(left), entry.get("sample", {}).get(test, len(left)))
-    chosen = {i for k, i in enumerate(left) if k in sample}
-    return [i for i, name in enumerate(names) if i in chosen or in_shard(module, name, tables)]
+    return [i for k, i in enumerate(left) if k in sample]
 
 
 def examples(count: int) -> int:

@@ -1,6 +1,11 @@
 """Samples of expensive tables: every entry names a test that exists; samples are spread and the same each time."""
 
 import ast
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
 
 import pytest
 
@@ -52,16 +57,16 @@ def test_a_slow_case_that_does_not_exist_is_an_error() -> None:
 
 
 def test_each_case_that_is_left_out_is_in_one_shard(monkeypatch: pytest.MonkeyPatch) -> None:
-    ids = [str(i) for i in range(100)]
-    tables = {"tests/a.py": {"sample": {"test_table": 10}, "slow": ["test_table[0]"], "alone": ["test_table[1]"]}}
-    default = set(sampling.kept("tests/a.py", "test_table", ids, tables))
-    added = []
-    for shard in range(sampling.SHARDS):
+    names = [f"test_table[{i}]" for i in range(100)]
+    tables = {"tests/a.py": {"slow": ["test_table[0]"], "alone": ["test_table[1]"]}}
+
+    def cases(shard: int) -> list[str]:
         monkeypatch.setattr(sampling, "shard", shard)
-        chosen = set(sampling.kept("tests/a.py", "test_table", ids, tables))
-        assert default <= chosen
-        added += chosen - default
-    assert sorted(added) == sorted(set(range(100)) - default - {1})
+        return [name for name in names if sampling.in_shard("tests/a.py", name, tables)]
+
+    for first in (0, 1000):  # numbers of shards go on
+        dealt = [name for shard in range(sampling.SHARDS) for name in cases(first + shard)]
+        assert sorted(dealt) == sorted(set(names) - {"test_table[1]"})
 
 
 def test_a_whole_test_may_be_in_no_shard(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -71,3 +76,41 @@ def test_a_whole_test_may_be_in_no_shard(monkeypatch: pytest.MonkeyPatch) -> Non
         monkeypatch.setattr(sampling, "shard", shard)
         seen += [sampling.in_shard("tests/a.py", name, tables) for name in ("test_long", "test_long[1]", "test_other")]
     assert sum(seen) == 1
+
+
+SUITE = """
+import pytest
+
+@pytest.mark.slow
+def test_long(): pass
+
+@pytest.mark.parametrize("n", [0, *(pytest.param(n, marks=pytest.mark.slow) for n in range(1, 9))])
+def test_table(n): pass
+
+def test_short(): pass
+"""
+
+
+def report(folder: Path, *options: str, seconds: float = 60.0) -> dict[str, str]:
+    """What happens to the tests of a suite with the options of this one and a single shard, in their order."""
+    (folder / "test_suite.py").write_text(SUITE)
+    settings = f"from tests import sampling\nsampling.SHARDS, sampling.SHARD_SECONDS = 1, {seconds}\n"
+    (folder / "conftest.py").write_text(settings + "from tests.conftest import *\n")
+    command = [sys.executable, "-m", "pytest", "-c", str(sampling.ROOT / "pyproject.toml"), f"--rootdir={folder}"]
+    text = subprocess.run(
+        [*command, "-p", "no:cacheprovider", "-v", *options, "test_suite.py"],
+        cwd=folder, env=os.environ | {"PYTHONPATH": str(sampling.ROOT)}, capture_output=True, text=True, timeout=60,
+    ).stdout  # fmt: skip
+    return dict(re.findall(r"^test_suite.py::(\S+) (\w+)", text, re.MULTILINE))
+
+
+def test_a_shard_runs_after_the_default_tests_in_an_order_of_its_own(tmp_path: Path) -> None:
+    first, second = list(report(tmp_path, "--shard=5")), list(report(tmp_path, "--shard=6"))
+    assert first[:2] == second[:2] == ["test_table[0]", "test_short"]
+    assert sorted(first) == sorted(second) == ["test_long", "test_short", *(f"test_table[{i}]" for i in range(9))]
+    assert first != second
+
+
+def test_a_shard_out_of_time_is_skipped_and_fails_nothing(tmp_path: Path) -> None:
+    outcomes = report(tmp_path, "--shard=5", seconds=0.0)
+    assert list(outcomes.values()) == ["PASSED"] * 3 + ["SKIPPED"] * 8

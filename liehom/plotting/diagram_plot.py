@@ -491,7 +491,7 @@ def plot_weights(kind: str | RootSystem, highest_weight: Sequence[int], ax: Axes
             _plot(ax, _segments(points[ends[:, 0]], points[ends[:, 1]]), color=GREY, linewidth=0.6, zorder=1)
         _draw_multiplicities(ax, points, times)
         top = tuple(int(x) for x in highest_weight)
-        _write(ax, _beside(points[0], 0.14 * abs(points).max()), r"$\lambda$")
+        _write(ax, _beside(points[0], 0.14 * max(abs(points).max(), 0.5)), r"$\lambda$")
         where = f"$\\lambda$ = {top if len(top) > 1 else top[0]}"
         _finish(ax, points, f"{system.type}, {where}: dimension {times.sum()}, {len(points)} weights")
     return ax

@@ -78,7 +78,7 @@ def steps_of(solution: Solution) -> Curves:
         raise InputError("the solution has no point to draw: its ensemble or its t_eval is empty")
     t = np.broadcast_to(np.asarray(solution.t, dtype=float), (*y.shape[:-2], y.shape[-1]))
     t, y = t.reshape(-1, t.shape[-1]), y.reshape(-1, *y.shape[-2:])
-    every = -(-t.shape[-1] // MAX_POINTS) or 1
+    every = -(-t.shape[-1] // MAX_POINTS)
     kept = np.unique(np.r_[0 : t.shape[-1] : every, t.shape[-1] - 1])
     return Curves(t[:MAX_TRAJECTORIES, kept], y[:MAX_TRAJECTORIES][..., kept], len(y), every)
 

@@ -85,10 +85,9 @@ def test_equivalent_mutants_exist() -> None:
 def test_the_tool_tells_the_mutants_that_tests_notice(tmp_path: Path) -> None:
     command = [sys.executable, "-m", "tests.mutation", "--record", str(tmp_path / "record.json"), ROOTS]
     run = subprocess.run([*command, "--matching", " divided:"], cwd=ROOT, capture_output=True, text=True)
-    assert run.returncode == 1, run.stderr
-    assert "killed by tests/exact/fullness/checker/test_verify_roots.py::" in run.stdout
     survivors = [line for line in run.stdout.splitlines() if line.startswith("* ")]
-    assert all("`pass`" in line or "factor == 0" in line for line in survivors), survivors
+    assert (run.returncode, survivors) == (0, []), run.stderr
+    assert run.stdout.count("killed by tests/exact/fullness/checker/test_verify_roots.py::") > 20
 
 
 def test_places_outside_of_functions_are_left_alone() -> None:

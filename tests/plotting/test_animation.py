@@ -16,7 +16,7 @@ from PIL import Image
 
 from liehom.base.errors import FormatError, InputError
 from liehom.plotting.canvas import new_figure
-from liehom.plotting.trajectory_plot import animate_trajectory, stage
+from liehom.plotting.trajectory_plot import _frames, animate_trajectory, stage
 
 SPIN = lh.GeneratorField(lh.defining(lh.so(2)), [1])
 SOL = lh.integrate(SPIN, (0, 3), [1.0, 0.0], dt=0.5)
@@ -150,3 +150,29 @@ def test_lengths_that_are_not_numbers_are_refused(options: Any) -> None:
 def test_coordinates_over_time_are_not_in_space() -> None:
     with pytest.raises(InputError, match="axes in the plane"):
         animate_trajectory(SOL, ax=new_figure(2, 2).add_subplot(projection="3d"))
+
+
+def test_the_number_of_frames_and_their_rate_are_bounded() -> None:
+    for seconds, fps in ((0.02, 100), (50, 100), (0.1, 20), (5000, 1)):
+        assert _frames(seconds, fps) == round(seconds * fps)
+    for seconds, fps in ((1, 101), (50.01, 100), (0.019, 100), (1, -2)):
+        with pytest.raises(InputError, match="from 2 to 5000"):
+            _frames(seconds, fps)
+
+
+def test_frames_are_evenly_spread_over_the_time() -> None:
+    animation = animate_trajectory(SOL, seconds=0.5, fps=10, ax=small())
+    for frame in range(5):
+        dot = animation._func(frame)[2]  # type: ignore[attr-defined]
+        angle = 3 * frame / 4
+        assert np.allclose(np.array(dot.get_data(), dtype=float)[:, 0], [np.cos(angle), np.sin(angle)], atol=1e-5)
+    animation._draw_was_started = True  # type: ignore[attr-defined]
+
+
+def test_progress_is_shown_on_a_terminal(tmp_path: Path, capsys: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    shown = []
+    for terminal in (False, True):
+        monkeypatch.setattr("sys.stderr.isatty", lambda answer=terminal: answer)
+        animate_trajectory(SOL, tmp_path / "orbit.gif", seconds=0.3, fps=10, ax=small())
+        shown.append(capsys.readouterr().err)
+    assert not shown[0] and "drawing" in shown[1] and "100%" in shown[1]

@@ -203,3 +203,18 @@ def test_titles_of_narrow_diagrams_are_not_cut() -> None:
         texts = [artist for artist in ax.get_children() if isinstance(artist, Text)]
         assert any("real rank" in text.get_text() for text in texts)
         assert all(text.get_window_extent().x1 <= ax.figure.bbox.x1 for text in texts if text.get_text())
+
+
+def test_labels_of_long_diagrams_are_small() -> None:
+    for rank, size in ((10, 9.0), (40, 20 * 12 / 40.4), (80, 4.0)):
+        assert [text.get_fontsize() for text in plot_dynkin(f"A{rank}").texts] == pytest.approx([size] * rank)
+
+
+def test_the_algebra_0_has_no_nodes() -> None:
+    assert node_places("0").shape == (0, 2)
+
+
+@pytest.mark.parametrize(("dimension", "size"), [(10, 9.0), (30, 200 / 30), (60, 5.0)])
+def test_names_of_many_basis_elements_are_small(dimension, size):
+    ax = plot_bracket_table(lh.LieAlgebra({}, dimension=dimension))
+    assert [label.get_fontsize() for label in ax.get_yticklabels()] == pytest.approx([size] * dimension)

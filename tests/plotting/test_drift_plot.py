@@ -1,5 +1,6 @@
 """Errors of first integrals over time: what is drawn is |F(y(t)) - F(y(t0))|, on whose axes, in which scale."""
 
+import dataclasses
 from typing import Any
 
 import numpy as np
@@ -12,7 +13,7 @@ from liehom.plotting.drift_plot import plot_energy_drift
 pytest.importorskip("matplotlib")
 
 from liehom.plotting.canvas import COLOURS, DARK_COLOURS, new_figure, style
-from liehom.plotting.drift_plot import HAIRLINE
+from liehom.plotting.drift_plot import HAIRLINE, _places
 
 FIELD = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m: -m / np.array([1.0, 2.0, 3.0]))
 ENERGY = "m0**2/2 + m1**2/4 + m2**2/6"
@@ -139,3 +140,22 @@ def test_labels_are_counted_and_integrals_checked() -> None:
 def test_nothing_is_drawn_without_points_and_finite_values(solution: Any, F: Any, options: Any, match: str) -> None:
     with pytest.raises(InputError, match=match):
         plot_energy_drift(solution, F, **options)
+
+
+@pytest.mark.parametrize("logarithmic", [False, True])
+def test_markers_are_evenly_spread_over_the_axis(logarithmic: bool) -> None:
+    times = np.geomspace(1, 1e4, 2000) if logarithmic else np.linspace(3, 7, 2000)
+    places = _places(times, 0.25, logarithmic)
+    assert np.allclose(places, (np.arange(6) + 0.25) / 6 * 2000, atol=2)
+
+
+def test_short_curves_are_marked_at_their_ends() -> None:
+    assert [_places(np.array(t), 0.5, False) for t in ([], [3.0], [3.0, 4.0])] == [[], [0], [1]]
+
+
+def test_points_that_are_not_finite_are_left_out() -> None:
+    sol = run()
+    y = sol.y.copy()
+    y[0, -3:] = np.inf
+    t, error = curve(plot_energy_drift(dataclasses.replace(sol, y=y), ENERGY))
+    assert np.array_equal(t, sol.t[1:-3]) and np.isfinite(error).all()

@@ -32,7 +32,7 @@ def drawn(ax: Any, colour: str) -> np.ndarray:
     return points[np.isfinite(points).all(axis=1)]
 
 
-@pytest.mark.parametrize("radius", [1.0, 2.5])
+@pytest.mark.parametrize("radius", [1.0, 2.5, 1e3])
 def test_equilibria_of_the_rigid_body_are_its_axes(radius: float) -> None:
     found = equilibria(flow_of(ENERGY, None, radius))
     wanted = BODY.equilibria(radius)
@@ -140,7 +140,8 @@ def test_other_arguments_raise(arguments: tuple[Any, ...], match: str) -> None:
     ("field", "options", "match"),
     [
         ("m0**2 + m1**2 + m2**2", {}, "constant on the sphere"),
-        ("1/m0", {}, "not finite"),
+        ("1 + 0*m0", {}, "constant on the sphere"),
+        ("1/m0", {}, r"not finite on the sphere, as at the point \[0\. 1\. 0\.\]"),
         ("log(m0)", {}, "not finite"),
         (["m0", "m1"], {}, "one energy, got 2"),
         (BODY.field(), {"energy": "m0"}, "not a first integral"),
@@ -158,3 +159,30 @@ def test_pictures_that_would_not_be_true_are_refused(field: Any, options: Any, m
 def test_small_spheres_have_portraits() -> None:
     assert len(equilibria(flow_of(ENERGY, None, 1e-6))) == 6
     assert plot_phase_portrait(ENERGY, radius=1e-6).lines
+
+
+@pytest.mark.parametrize("radius", [1e-3, 2.5, 1e3])
+def test_the_largest_speed_is_that_on_the_sphere(radius: float) -> None:
+    assert flow_of(ENERGY, None, radius).speed == pytest.approx(radius**2 * flow_of(ENERGY, None, 1.0).speed)
+
+
+def test_levels_are_closer_to_saddles_than_to_centers() -> None:
+    t = (np.arange(4) + 0.5) / 4
+    assert np.allclose(between(0.0, 1.0, False, False, 4), np.sin(np.pi * t / 2) ** 2)
+    assert np.allclose(between(0.0, 1.0, True, True, 4), t)
+    assert np.allclose(between(0.0, 1.0, False, True, 4), t**2)
+    assert np.allclose(between(1.0, 3.0, True, False, 4), 3 - 2 * t[::-1] ** 2)
+
+
+def test_a_field_at_rest_has_the_level_sets_of_its_energy() -> None:
+    still = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m: m)
+    energy = flow_of(still, "m2", 1.0).energy
+    assert energy is not None and energy(np.array([0.6, 0.0, 0.8])) == 0.8
+
+
+def test_a_portrait_without_level_sets_has_its_separatrices() -> None:
+    with style():
+        ax = plot_phase_portrait(ENERGY, levels=0)
+    assert not {COLOURS[0]} & {line.get_color() for line in ax.lines} and len(drawn(ax, COLOURS[1])) > 100
+    with pytest.raises(InputError, match="levels is -1"):
+        plot_phase_portrait(ENERGY, levels=-1)

@@ -14,11 +14,12 @@ import pytest
 import liehom as lh
 from liehom.base.errors import FormatError, InputError
 from liehom.flow.convergence.orders import ConvergenceTable
-from liehom.plotting.canvas import DARK_COLOURS, new_figure, style
-from liehom.plotting.error_plot import plot_convergence
-from liehom.plotting.trajectory_plot import plot_trajectory
+from liehom.plotting.canvas import COLOURS, DARK_COLOURS, current_colours, inline_svg, new_figure, style
+from liehom.plotting.error_plot import draw_floor, plot_convergence
+from liehom.plotting.trajectory_plot import curves_of, plot_trajectory
 
 matplotlib = pytest.importorskip("matplotlib")
+trajectory_plot = importlib.import_module("liehom.plotting.trajectory_plot")
 Figure = pytest.importorskip("matplotlib.figure").Figure
 Text = pytest.importorskip("matplotlib.text").Text
 NAN = float("nan")
@@ -265,7 +266,12 @@ def test_axes_of_the_caller_in_space_and_in_the_plane() -> None:
 
 @pytest.mark.parametrize(
     ("options", "match"),
-    [({"show": "dots"}, "'both'"), ({"coordinates": (0, 3)}, "from 0 to 2"), ({"coordinates": ()}, "from 0 to 2")],
+    [
+        ({"show": "dots"}, "'both'"),
+        ({"coordinates": (0, 3)}, "from 0 to 2"),
+        ({"coordinates": (0, -1)}, "from 0 to 2"),
+        ({"coordinates": ()}, "from 0 to 2"),
+    ],
 )
 def test_wrong_options_of_plot_trajectory_raise(options: Any, match: str) -> None:
     with pytest.raises(InputError, match=match):
@@ -421,3 +427,105 @@ def test_tables_on_dark_pages_have_light_lines() -> None:
     with style(dark=True):
         figure = plot_convergence(table())
     assert {line.get_color() for line in figure.axes[0].lines} & set(DARK_COLOURS)
+
+
+def test_no_triangle_for_errors_that_do_not_decrease() -> None:
+    flat = table(orbit_errors=(1e-3,) * 4, trajectory_errors=(NAN,) * 4)
+    assert not plot_convergence(flat).axes[0].patches
+
+
+def test_errors_that_are_zero_are_left_out() -> None:
+    axes = plot_convergence(table(orbit_errors=(1e-3, 0.0, 1e-5, 0.0), trajectory_errors=(0.0,) * 4)).axes[0]
+    (line,) = (line for line in axes.lines if np.isfinite(line.get_xdata()).any())
+    assert [*zip(line.get_xdata(), line.get_ydata(), strict=True)] == [(0.05, 1e-5), (0.2, 1e-3)]
+
+
+def test_an_error_of_the_size_of_its_floor_has_an_open_marker() -> None:
+    made = table(orbit_errors=(1e-3, 1e-4, 1e-5, 1e-6), trajectory_errors=(NAN,) * 4, floors=(1e-6,) * 4)
+    axes = plot_convergence(made).axes[0]
+    assert [line.get_ydata().tolist() for line in axes.lines if line.get_linestyle() == "None"] == [[1e-6]]
+    assert [1e-5, 1e-4, 1e-3] in [line.get_ydata().tolist() for line in axes.lines]
+
+
+@pytest.mark.parametrize(("errors", "lowest"), [([0.9, 0.0], 0.05), ([0.1, 0.9], 0.03), ([NAN, 0.1], 0.03)])
+def test_the_floor_is_shaded_down_to_the_smallest_error(errors: list[float], lowest: float) -> None:
+    axes = new_figure(3, 3).add_subplot()
+    draw_floor(axes, 1.0, errors)
+    (patch,) = axes.patches
+    assert np.allclose([patch.get_y(), patch.get_y() + patch.get_height()], [lowest, 1.0])
+
+
+def test_eight_coordinates_are_curves_and_nine_are_colors() -> None:
+    eight, nine = (plot_trajectory(solution(size)).axes[0] for size in (8, 9))
+    assert (len(eight.lines), len(eight.collections)) == (8, 0)
+    assert (len(nine.lines), len(nine.collections)) == (0, 1)
+
+
+def test_steps_are_made_again_for_short_runs_only(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(trajectory_plot, "MAX_STEPS_MADE", 6)
+    for end, exact in ((6, True), (7, False)):
+        made = curves_of(lh.integrate(rotation(2), (0, end), [1.0, 0.0], dt=1.0))
+        assert bool(np.abs(made.y[0, 0] - np.cos(made.t[0])).max() < 1e-12) is exact
+
+
+def test_times_of_trajectories_that_end_early_cover_the_longest() -> None:
+    ahead = np.array([[0.0, 1.0, NAN], [0.0, 1.0, 2.0]])
+    for times, first, last in ((ahead, 0.0, 2.0), (5 - ahead, 5.0, 3.0)):
+        fine = trajectory_plot._times(times)
+        assert (fine[0], fine[-1], len(fine)) == (first, last, 400)
+    assert len(trajectory_plot._times(np.arange(300.0)[None])) == 2 * 299 + 1
+    same = trajectory_plot._times(np.array([[0.0, 1.0, 3.0]] * 2))
+    assert np.allclose(same, np.r_[np.linspace(0, 1, 133, endpoint=False), np.linspace(1, 3, 134)])
+
+
+def test_splines_have_the_points_and_the_parts() -> None:
+    t = np.array([0.0, 1.0, 2.0, 3.0])
+    for parts in (1, 2, 5):
+        times, points = trajectory_plot._splined(t, np.array([t**2, t]), parts)
+        assert np.allclose(times, np.linspace(0, 3, 3 * parts + 1)) and np.allclose(points, [times**2, times])
+    times, points = trajectory_plot._splined(np.array([0.0, NAN]), np.array([[1.0, NAN]]), 2)
+    assert times[0] == 0 and points[0, 0] == 1 and np.isnan(times[1:]).all() and np.isnan(points[0, 1:]).all()
+
+
+def test_the_title_has_the_times_of_the_first_trajectory() -> None:
+    def event(t: Any, y: Any) -> Any:
+        return y[..., 0] - 0.5
+
+    event.terminal = True  # type: ignore[attr-defined]
+    made = lh.integrate(rotation(2), (0, 2), [[1.0, 0.0], [0.1, 0.0]], events=event)
+    title = plot_trajectory(made).axes[0].get_title(loc="left")
+    assert f"$t$ = 0 to {np.pi / 3:.4g}" in title
+    assert np.isfinite(made.t[1]).sum() > 0 and np.nanmax(made.t[1]) == 2
+
+
+def test_a_picture_within_a_page_has_no_background_and_no_warning() -> None:
+    def draw() -> Any:
+        ax = new_figure(2, 2).add_subplot()
+        ax.text(0.5, 0.5, "\U00013000")  # no font of matplotlib has it
+        return ax
+
+    text = inline_svg(draw, "part")
+    assert text.startswith("<svg ") and "\U00013000" in text
+    background = text[text.index('id="part-patch_1"') :]
+    assert "opacity: 0" in background[: background.index("/>")]
+
+
+def test_colors_reach_from_the_largest_value_to_its_negative() -> None:
+    for size in (1e-3, 50.0):
+        made = lh.integrate(rotation(9), (0, 1), size * np.eye(9)[0], dt=0.1)
+        assert np.allclose(plot_trajectory(made).axes[0].collections[0].get_clim(), (-size, size))
+
+
+@pytest.mark.parametrize("count", [7, 8])
+def test_up_to_seven_step_sizes_are_ticks(count: int) -> None:
+    sizes = tuple(0.3 / (k + 1) for k in range(count))
+    errors = tuple(h**2 for h in sizes)
+    made = table(dts=sizes, orbit_errors=errors, trajectory_errors=errors, floors=(1e-14,) * count)
+    labels = [text.get_text() for text in plot_convergence(made).axes[0].get_xticklabels()]
+    assert (labels == [f"{h:.4g}" for h in sorted(sizes)]) is (count == 7)
+
+
+def test_gray_text_is_not_that_of_a_dark_page() -> None:
+    for gray, colours in (("0.5", COLOURS), ("0.51", DARK_COLOURS)):
+        with matplotlib.rc_context({"text.color": gray}):
+            assert current_colours() == colours

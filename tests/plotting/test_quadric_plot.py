@@ -70,6 +70,7 @@ def test_points_and_a_matrix_in_axes_in_the_plane() -> None:
         (np.triu(np.ones((3, 3))), [1.0, 0.0, 0.0], "symmetric 3 x 3"),
         (np.diag([1.0, 0.0, 0.0]), [1.0, 0.0, 0.0], "ellipsoid"),
         (np.eye(3), lh.integrate(FIELD, (0, 2), [0.5, 0.0, 1.25**0.5]), "same value"),
+        (np.eye(3), lh.integrate(FIELD, (0, 2), [5e-5, 0.0, 1e-4]), "same value"),
         (np.eye(3), lh.integrate(lh.GeneratorField(lh.defining(lh.so(2)), [1]), (0, 1), [1.0, 0.0]), "2 coordinates"),
     ],
 )
@@ -89,3 +90,14 @@ def test_a_picture_has_a_limited_number_of_surfaces() -> None:
         plot_quadric(np.eye(3), np.outer(np.arange(1, 61), [1.0, 0.0, 0.0]))
     ax = plot_quadric(np.eye(3), np.outer(np.arange(1, 6), [1.0, 0.0, 0.0]))
     assert ax.get_title(loc="left").endswith("and 2 more")
+
+
+def test_three_quadrics_are_all_named() -> None:
+    title = plot_quadric(np.eye(3), np.outer([1.0, 2.0, 3.0], [1.0, 0.0, 0.0])).get_title(loc="left")
+    assert title == "sphere, $c$ = 1, sphere, $c$ = 4, sphere, $c$ = 9"
+
+
+def test_a_far_point_of_a_cone_is_on_a_cone() -> None:
+    point = 1e8 * np.array([2**0.5, 7**0.5, 3.0])
+    assert point[0] ** 2 + point[1] ** 2 != point[2] ** 2  # round-off
+    assert plot_quadric(FORM, point).get_title(loc="left") == "cone, $c$ = 0"

@@ -10,7 +10,7 @@ import pytest
 import liehom as lh
 from liehom.base.errors import InputError
 from liehom.flow.convergence.costs import WorkPrecisionRow, WorkPrecisionTable
-from liehom.plotting.error_plot import plot_work_precision
+from liehom.plotting.error_plot import _small_label, plot_work_precision
 
 pytest.importorskip("matplotlib")
 
@@ -118,3 +118,28 @@ def test_a_measured_table_is_drawn() -> None:
 def test_wrong_arguments_are_refused(given: Any, options: dict[str, Any]) -> None:
     with pytest.raises(InputError, match=r"expected|axes of matplotlib"):
         plot_work_precision(given, **options)
+
+
+@pytest.mark.parametrize(
+    ("tick", "axis", "text"),
+    [
+        (2e-3, (1e-3, 9e-3), r"$2\times10^{-3}$"),
+        (4e-3, (1e-3, 9e-3), ""),
+        (5e-3, (1e-3, 9e-3), r"$5\times10^{-3}$"),
+        (4e-3, (2e-3, 6e-3), r"$4\times10^{-3}$"),
+        (2e-3, (1e-3, 9e-2), ""),
+        (1e-2, (8e-3, 2e-2), r"$1\times10^{-2}$"),
+    ],
+)
+def test_minor_ticks_have_a_label_if_there_is_room(tick: float, axis: tuple[float, float], text: str) -> None:
+    assert _small_label(tick, *axis) == text
+
+
+def test_runs_without_an_error_or_a_cost_are_not_drawn() -> None:
+    ax = plot_work_precision(table(row("a", 1, error=0.0), row("a", 2), row("a", 3), row("a", 4, cpu_time=0.0)))
+    np.testing.assert_allclose(data(ax), [[[0.2, 0.3], [1e-4, 1e-6]]])
+
+
+def test_an_error_of_the_size_of_its_floor_is_unresolved() -> None:
+    ax = plot_work_precision(table(row("a", 1), row("a", 2, floor=1e-4)))
+    assert [line.get_ydata().tolist() for line in ax.lines if line.get_color() == GREY][-1] == [1e-4]

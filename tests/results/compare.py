@@ -103,6 +103,10 @@ INTENDED = (
         for key in ("y", "nfev")
     }
     | {
+        f"cards: [so of diag(1, -1, 5, 7)] [{key}] ": "the search meets another involution first"
+        for key in ("Cartan involution", "maximal compact subalgebra")
+    }
+    | {
         f"integrations: [a damped spin] [{key}] ": "the default step is a Taylor step"
         for key in ("t", "y", "nfev", "n_steps", "report")
     }
