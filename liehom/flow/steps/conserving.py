@@ -666,19 +666,14 @@ class Conserving(Step):
         """`base_order` of the base, an int."""
         return self.step.base_order
 
-    @property
-    def uses_isotropy(self) -> bool:
-        """Whether the step asks for isotropy frames: True."""
-        return True
+    uses_isotropy = True
 
     @property
     def kept_order(self) -> int | None:
         """The n of (7.2), after `prepare`; None if all E_n computed vanish."""
         return None if self._begun is None else self._begun.n
 
-    @property
-    def prepares_by_psi(self) -> bool:
-        return True
+    prepares_by_psi = True
 
     @property
     def trace_key(self) -> Hashable:
