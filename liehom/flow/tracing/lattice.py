@@ -331,11 +331,11 @@ class LatticeKernel:
         self._table = (self.planes.ctypes.data + step * np.arange(len(self.planes))).astype(np.uint64)
         self.text: str = self._module(width)
         self._engine, self.cached = engine_of(self.text)
-        p, i, d = ctypes.c_void_p, ctypes.c_int64, ctypes.c_double
-        kinds = {f"stage{k}": [p, i, i, d, d] for k in range(len(stages))} | {"run": [p, i, i, p, p, i, i, i, d, d]}
-        kinds |= {f"after{k}": [p, p, p, i] for k in range(len(stages))}
+        kinds = {"run": "piippiiidd"} | {f"{s}{k}": t for k in range(len(stages)) for s, t in _ARGUMENTS.items()}
         address = self._engine.get_function_address
-        self._functions = {name: ctypes.CFUNCTYPE(None, *some)(address(name)) for name, some in kinds.items()}
+        self._functions = {
+            name: ctypes.CFUNCTYPE(None, *map(_KINDS.__getitem__, t))(address(name)) for name, t in kinds.items()
+        }
 
     # -- what is loaded and stored -----------------------------------------------------------------------
     def _graphs(self, k: int) -> list[Expr]:
@@ -472,6 +472,8 @@ class LatticeKernel:
         return self.planes[offset // self.planes.strides[0]]
 
 
+_KINDS: dict[str, Any] = {"p": ctypes.c_void_p, "i": ctypes.c_int64, "d": ctypes.c_double}
+_ARGUMENTS = {"stage": "piidd", "after": "pppi"}  # kinds of arguments, and those of the functions of a stage
 _ATTRIBUTES = 'attributes #0 = { nounwind "prefer-vector-width"="512" }\n!0 = !{!"branch_weights", i32 1, i32 1000}\n'
 _RUN = """\
 define void @run(ptr %planes, i64 %begin, i64 %end, ptr %to, ptr %from, i64 %margin, i64 %first, i64 %last, \
