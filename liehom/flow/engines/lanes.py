@@ -161,7 +161,8 @@ class Memory:
 def run_blocks(kernel: Kernel, state: Array, fields: Mapping[str, Any], steps: int) -> None:
     """Run a kernel on all blocks of a state, in threads if there is enough to do."""
     blocks = state.shape[1] // kernel.width
-    workers = min(cores(), blocks) if state.shape[1] * steps >= LANE_STEPS_FOR_THREADS else 1
+    shares = kernel.in_lockstep and state.shape[1] * steps >= LANE_STEPS_FOR_THREADS
+    workers = min(cores(), blocks) if shares else 1
     if workers == 1:
         kernel(state, **fields)
         return

@@ -60,7 +60,7 @@ def test_loops_give_the_numbers_of_numpy(
 @pytest.mark.parametrize("name", ["elementary functions", "einsum"])
 def test_jax_computes_with_arrays_in_place_of_loops(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("jax")
-    monkeypatch.setattr(jax_kernel, "UNROLLED_OPERATIONS", 1)
+    monkeypatch.setitem(jax_kernel.JaxKernel.tracing, "unrolled", 1)
     field, start = lh.GeneratorField(lh.defining(lh.so(K)), PSIS[name]), _points(3)
     options: dict[str, Any] = {"step": lh.Taylor(3), "t_eval": [0.4, 1.0], "dt": 0.05}
     wanted = lh.integrate(field, (0.0, 1.0), start, **options)
