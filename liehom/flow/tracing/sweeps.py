@@ -9,7 +9,6 @@ from types import ModuleType
 from typing import Any, TypeAlias, final
 
 import numpy as np
-import numpy.typing as npt
 
 from liehom.base.errors import TraceError
 from liehom.base.typing import Array
@@ -59,28 +58,37 @@ def evaluated(outputs: Sequence[Expr], inputs: Mapping[int, Any]) -> list[Any]:
         elif x.op == "input":
             values[x.index] = inputs[x.value]
         else:
-            function = IN_NUMPY.get(x.op) or getattr(np, x.op, None)
-            if function is None:
-                raise TraceError(f"the operation {x.op} of a recorded function has no counterpart in numpy")
-            values[x.index] = function(*[values[a.index] for a in x.args])
+            values[x.index] = applied(np, x.op, [values[a.index] for a in x.args])
     return [values[x.index] for x in outputs]
 
 
-IN_NUMPY: dict[str, Callable[..., Any]] = {
-    **OPERATORS, **COARSE, "pow": np.power, "and": np.logical_and, "not": np.logical_not, "select": np.where,
-    "abs": np.abs, "sinq": lambda q: rotation(q, 1), "cosq": lambda q: rotation(q, 0),
-}  # fmt: skip
+# names in numpy of operations that have another one
+NAMES = {"and": "logical_and", "not": "logical_not", "select": "where"}
 
 
-def rotation(square: npt.ArrayLike, first: int) -> Array:
-    """sin(r)/r (first = 1) or cos(r) (first = 0) of r^2, hyperbolic for r^2 < 0."""
-    q: Array = np.asarray(square, dtype=np.float64)
-    r = np.sqrt(np.abs(q))
-    grown = np.where(q < 0, r, 0.0)
-    if not first:
-        return np.where(q < 0, np.cosh(grown), np.cos(r))
-    safe = np.where(r == 0, 1.0, r)
-    return np.where(r == 0, 1.0, np.where(q < 0, np.sinh(grown), np.sin(r)) / safe)
+def applied(xp: ModuleType, op: str, args: Sequence[Number]) -> Any:
+    """The value of an elementary operation, by numpy or by JAX."""
+    if op in ("sinq", "cosq"):
+        return rotation(xp, args[0], int(op == "sinq"))
+    if op in COARSE:
+        return COARSE[op](args[0], xp)
+    function = OPERATORS.get(op) or getattr(xp, NAMES.get(op, op), None)
+    if function is None:
+        raise TraceError(f"the operation {op} of a recorded function is not known to {xp.__name__}")
+    return function(*args)
+
+
+def rotation(xp: ModuleType, q: Number, first: int) -> Any:
+    """sin(r)/r (first = 1) or cos(r) (first = 0) with r^2 = q; neither value nor derivative of any branch overflows."""
+    near = xp.abs(q) < SHORT_SERIES_REACH
+    total: Any = 0.0
+    for c in reversed(rotation_series(SHORT_SERIES_REACH, first)):
+        total = total * q + c
+    safe = xp.where(near, 1.0, q)
+    r = xp.sqrt(xp.abs(safe))
+    grown = xp.where(safe > 0, 0.0, r)
+    round_, straight = (xp.sin(r) / r, xp.sinh(grown) / r) if first else (xp.cos(r), xp.cosh(grown))
+    return xp.where(near, total, xp.where(safe > 0, round_, straight))
 
 
 def partials(op: str, args: Sequence[Number], value: Number, *, fixed_exponent: bool = False) -> tuple[Number, ...]:
@@ -120,7 +128,7 @@ def _sinq_slope(q: Number, x: Number) -> Number:
 
 def _rotation_of(name: str, q: Number) -> Number:
     """sin(r)/r or cos(r) of r^2, an array or a tracer."""
-    return entire_function(name, q) if isinstance(q, Traced) else IN_NUMPY[name](q)
+    return entire_function(name, q) if isinstance(q, Traced) else applied(np, name, [q])
 
 
 # The slope of a function of one number, from its argument and its value; the first rows are those of series, too.
@@ -187,13 +195,12 @@ class Sweeps:
         if x.op == "expv":  # exp(A) v, shape (n, L), of the entries of A and v
             matrix, vector = self._parts(x.value, args)
             return np.moveaxis((exponentials(matrix) @ vector[..., None])[..., 0], -1, 0)
-        function = IN_NUMPY.get(x.op) or getattr(np, x.op, None)
-        if function is None:
+        if x.op in ("loop", "map", "table"):
             raise TraceError(
-                f"the derivative of a step with {'an iteration' if x.op == 'loop' else f'the operation {x.op}'} is "
-                "not known: take an explicit method, or differentiate with JAX (engine='jax')"
+                "the derivative of a step with an iteration is not known: take an explicit method, or differentiate "
+                "with JAX (engine='jax')"
             )
-        return function(*args)
+        return applied(np, x.op, args)
 
     def _parts(self, places: tuple[tuple[int, int], ...], args: list[Any]) -> tuple[Array, Array]:
         n = len(args) - len(places)
@@ -323,7 +330,7 @@ def _entries(jnp: ModuleType, x: Expr, values: Mapping[int, JaxArray]) -> Any:
         name, size = x.value
         lists = [_array(jnp, x.args[i : i + size], values) for i in range(0, len(x.args), size)]
         axes = max(a.ndim for a in lists)
-        return _applied(jnp, name, [a.reshape(size, *[1] * (axes - a.ndim), *a.shape[1:]) for a in lists])
+        return applied(jnp, name, [a.reshape(size, *[1] * (axes - a.ndim), *a.shape[1:]) for a in lists])
     table, first = x.value
     places, factors = table.padded()
     some = x.args[:first], x.args[first:]
@@ -353,40 +360,7 @@ def _value(
         return args[0][x.value]
     if x.op == "expv":
         return _exponential(jnp, x.value, args)
-    return _applied(jnp, x.op, args)
-
-
-def _applied(jnp: ModuleType, op: str, args: Sequence[JaxArray]) -> Any:
-    """The value of an elementary operation."""
-    if op in ("sinq", "cosq"):
-        return _rotation(jnp, args[0], int(op == "sinq"))
-    if op in COARSE:
-        return COARSE[op](args[0], jnp)
-    function = OPERATORS.get(op) or getattr(jnp, _NAMES.get(op, op), None)
-    if function is None:
-        raise TraceError(f"the operation {op} is not known to JAX")
-    return function(*args)
-
-
-# names in numpy of operations that have another one
-_NAMES = {"and": "logical_and", "not": "logical_not", "select": "where"}
-
-
-def _rotation(jnp: ModuleType, q: JaxArray, first: int) -> JaxArray:
-    """sin(r)/r (first = 1) or cos(r) (first = 0) with r^2 = q; neither value nor derivative of any branch overflows."""
-    near = jnp.abs(q) < SHORT_SERIES_REACH
-    total: Any = 0.0
-    for c in reversed(rotation_series(SHORT_SERIES_REACH, first)):
-        total = total * q + c
-    safe = jnp.where(near, 1.0, q)
-    r = jnp.sqrt(jnp.abs(safe))
-    grown = jnp.where(safe > 0, 0.0, r)
-    far = (
-        jnp.where(safe > 0, jnp.sin(r), jnp.sinh(grown)) / r
-        if first
-        else jnp.where(safe > 0, jnp.cos(r), jnp.cosh(grown))
-    )
-    return jnp.where(near, total, far)
+    return applied(jnp, x.op, args)
 
 
 def _iterated(jnp: ModuleType, x: Expr, values: Mapping[int, JaxArray], differentiable: bool) -> list[JaxArray]:
