@@ -213,9 +213,7 @@ class SeriesExponential(TrueExponential):
     array([0., 1.])
     """
 
-    @property
-    def name(self) -> str:
-        return "exp (series)"
+    name = "exp (series)"
 
     def act(self, x: Values, m: Values) -> Values:
         if is_exact(x) or is_exact(m):
@@ -262,9 +260,7 @@ class MatrixExponential(TrueExponential):
     array([0., 1.])
     """
 
-    @property
-    def name(self) -> str:
-        return "exp (expm)"
+    name = "exp (expm)"
 
     def act(self, x: Values, m: Values) -> Values:
         if is_exact(x) or is_exact(m):
@@ -368,9 +364,7 @@ class Rodrigues(TrueExponential):
         super().__init__(representation)
         self._form, self._power = identity
 
-    @property
-    def name(self) -> str:
-        return "exp (Rodrigues)"
+    name = "exp (Rodrigues)"
 
     def act(self, x: Values, m: Values) -> Values:
         return rodrigues_action(self.infinitesimal, PowerIdentity(self._form, self._power), x, m)
@@ -762,9 +756,7 @@ class BlockExponential(TrueExponential):
         order = np.concatenate([moved, self._fixed])
         self._order: IntegerArray | None = None if np.array_equal(order, np.arange(len(order))) else np.argsort(order)
 
-    @property
-    def name(self) -> str:
-        return "exp (Rodrigues in blocks)"
+    name = "exp (Rodrigues in blocks)"
 
     def act(self, x: Values, m: Values) -> Values:
         if is_exact(x) or is_exact(m):

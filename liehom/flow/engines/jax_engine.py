@@ -20,7 +20,7 @@ from liehom.flow.action.field import GeneratorField
 from liehom.flow.action.fingerprint import Watch
 from liehom.flow.action.frames import tight_frame
 from liehom.flow.engines.engine import Problem, executed
-from liehom.flow.engines.jax_kernel import FastPath, enabled_x64
+from liehom.flow.engines.jax_kernel import JaxKernel, enabled_x64
 from liehom.flow.engines.jax_loops import (
     ArrayStep,
     At,
@@ -34,6 +34,7 @@ from liehom.flow.engines.jax_loops import (
     with_adaptive_sizes,
     with_given_sizes,
 )
+from liehom.flow.engines.llvm_engine import CodeStore, CompiledRun
 from liehom.flow.engines.traced_step import args_form, traced_step
 from liehom.flow.run.check import gap_of
 from liehom.flow.run.control import ERROR_TERMS, SLACK, SizeLimits
@@ -181,7 +182,7 @@ def _report(problem: Problem, dimension: int) -> Report:
     )  # fmt: skip
 
 
-# The engine "jax": numpy arrays by `Run` with compiled ordinary steps, JAX arrays by loops that JAX can transform. A
+# The engine "jax": numpy arrays by `Run` with compiled steps, JAX arrays by loops that JAX can transform. A
 # call on JAX arrays is one of three.
 # * All numbers are known: one compiled loop.
 # * `jax.grad` differentiates the call, and the numbers are known: the same loop, and for the gradient a loop with the
@@ -198,7 +199,7 @@ UNBOUNDED = 1_000_000  # a value of `max_steps` from which on it does not bound 
 
 @final
 class JaxEngine:
-    """The engine "jax", which makes ordinary steps of numpy arrays, and all steps of JAX arrays, by code of JAX."""
+    """The engine "jax", which makes the steps of numpy arrays and of JAX arrays by code of JAX."""
 
     name = "jax"
 
@@ -213,7 +214,9 @@ class JaxEngine:
         if not is_jax(problem.start):
             if problem.field.sites:
                 return _lattice_of_numpy(self, problem)
-            return executed(problem, lambda run: FastPath(run, self.name))
+            if problem.options.events is not None:
+                raise InputError("engine='jax' does not look for events: take engine='llvm' or engine='numpy'")
+            return executed(problem, lambda run: CompiledRun(problem, run, CodeStore(JaxKernel)))
         start: Any = problem.start
         if self._watch is None or self._watch.changed():
             self._programs, self.steps = {}, {}

@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 from liehom.base.typing import Array, BooleanArray, IntegerArray, Values
 from liehom.flow.action.field import check_point
+from liehom.flow.action.maps import matrices_of
 from liehom.flow.action.space import Action
 from liehom.flow.engines.traced_step import totals_of
 from liehom.flow.run.options import END, EVENT
@@ -61,27 +62,42 @@ GUARD_PROJECTIONS = 2  # number of random projections, one of which shows the ra
 
 
 def with_guard(graph: StepGraph, action: Action, dimension: int) -> StepGraph:
-    """The graph with a `guard`: whether a point is finite and its orbit certainly of dimension d. A map of a random
-    R^d to g, followed by the action on the point, is injective; if orbits of larger dimension exist, those of several
-    R^(d + 1) are not. The number "checks" of the run switches it on.
+    """The graph with a `guard`: whether a point is finite and its orbit certainly of dimension d. The number "checks"
+    of the run switches it on.
     """
-    rng = np.random.default_rng((0, dimension))
-    generic = check_point(action.representation, rng.normal(size=(4, graph.size)))
-    low = dimension < int(generic.max())
     tape: Any = graph.point[0].tape
-    if tape.least_loop is not None:  # an elimination is longer than such a step
-        return graph
     m: Any = Traced.inputs(tape, 0, graph.size)
-    frame: Any = action.infinitesimal.right(m)
-    size, certain, bounded = (m * m).sum(), Traced(tape, tape.false), Traced(tape, tape.true)
-    for _ in range(GUARD_PROJECTIONS):
-        lengths = _orthogonal_lengths(frame @ rng.normal(size=(action.dimension, dimension + low)))
-        certain = certain | _are_certain(lengths[:dimension], size)
-        bounded = bounded & (sum(lengths[dimension:]) <= GUARD_DEFECT**2 * size) if low else bounded
+    size: Any = (m * m).sum()
+    matrices = matrices_of(action.representation)
+    if dimension == graph.size - 1 and np.array_equal(matrices, -np.swapaxes(matrices, 1, 2)):
+        # an orbit that is open in a sphere has a ball of one radius around each of its points: it is the sphere
+        certain, bounded = size > 0, size < np.inf
+    elif tape.least_loop is not None:  # an elimination is longer than such a step
+        return graph
+    else:
+        certain, bounded = _has_rank(action, m, size, dimension)
     certain = certain & bounded
     unchecked = Traced(tape, tape.run_constant("checks", 0.0)) == 0
     guard = Traced(tape, unchecked | certain).entry
     return replace(graph, guard=guard, constant_functions=tuple(tape.constant_functions))
+
+
+def _has_rank(action: Action, m: Values, size: Values, dimension: int) -> tuple[Values, Values]:
+    """Whether the orbit of a point m with m.m = size is certainly of at least, and at most, dimension d. A map of a
+    random R^d to g, followed by the action on the point, is injective; if orbits of larger dimension exist, those of
+    several R^(d + 1) are not.
+    """
+    rng, tape = np.random.default_rng((0, dimension)), m.tape  # type: ignore[union-attr]
+    generic = check_point(action.representation, rng.normal(size=(4, m.shape[-1])))
+    low = dimension < int(generic.max())
+    frame: Any = action.infinitesimal.right(m)
+    certain: Any = Traced(tape, tape.false)
+    bounded: Any = Traced(tape, tape.true)
+    for _ in range(GUARD_PROJECTIONS):
+        lengths = _orthogonal_lengths(frame @ rng.normal(size=(action.dimension, dimension + low)))
+        certain = certain | _are_certain(lengths[:dimension], size)
+        bounded = bounded & (sum(lengths[dimension:]) <= GUARD_DEFECT**2 * size) if low else bounded
+    return certain, bounded
 
 
 def _orthogonal_lengths(matrix: Values) -> list[Any]:
@@ -161,7 +177,8 @@ class Memory:
 def run_blocks(kernel: Kernel, state: Array, fields: Mapping[str, Any], steps: int) -> None:
     """Run a kernel on all blocks of a state, in threads if there is enough to do."""
     blocks = state.shape[1] // kernel.width
-    workers = min(cores(), blocks) if state.shape[1] * steps >= LANE_STEPS_FOR_THREADS else 1
+    shares = kernel.in_lockstep and state.shape[1] * steps >= LANE_STEPS_FOR_THREADS
+    workers = min(cores(), blocks) if shares else 1
     if workers == 1:
         kernel(state, **fields)
         return

@@ -102,12 +102,7 @@ class LatticeStep(Step):
                 if errors is not None:
                     errors[index] = 0.0
                 continue
-            self.kernel.put(m[index])
-            begin = float(t[index + first])
-            if self._noisy is not None:
-                self.kernel.put(self._noisy.noise(begin)[index], "w")
-            self.kernel.run(0, 1, begin, size, self.workers)
-            points[index] = self.kernel.get()
+            points[index] = self.advance(m[index], index, range(1), float(t[index + first]), size)
             if errors is not None:
                 errors[index] = self.kernel.get("e")
         return points, errors

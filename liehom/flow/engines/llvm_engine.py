@@ -149,11 +149,11 @@ class CodeStore:
                 return traced_step(
                     run.action, run.field, run.step, points, dimension, nominal=o.nominal, limits=limits,
                     ends=(float(run.span[0]), float(run.span[1])), stops=stops,
-                    args=args, lead=lead, unrolled=UNROLLED_OPERATIONS,
+                    args=args, lead=lead, **{"unrolled": UNROLLED_OPERATIONS, **self.code.tracing},
                 )  # fmt: skip
 
             raised = run.step.order > run.step.base_order and not o.nominal  # such steps have a clock
-            graph = traced(stops=not uniform or raised)
+            graph = traced(stops=not (uniform and self.code.in_lockstep) or raised)
             if graph.reached is None and graph.elapsed is not None:
                 graph = traced(stops=True)
             self.graphs[key] = with_guard(graph, run.action, dimension)
@@ -175,9 +175,8 @@ class CompiledRun:
 
     def __init__(self, problem: Problem, run: Run, store: CodeStore, most: int | None = None) -> None:
         if run.dtype != np.float64:
-            raise InputError(
-                f"engine='llvm' computes in float64, the start is of type {run.dtype}: take engine='numpy'"
-            )
+            name, kind = store.code.engine, run.dtype
+            raise InputError(f"engine={name!r} computes in float64, the start is of type {kind}: take engine='numpy'")
         self.store, self.most = store, most  # steps of a call
         self.search = None if run.stops.events is None else EventSearch(run)
         self.start = run.start.reshape(-1, run.start.shape[-1]).astype(np.float64)
@@ -186,7 +185,7 @@ class CompiledRun:
         for d in np.unique(dimensions):
             lanes = np.flatnonzero(dimensions == d)
             self.groups.append((lanes, *store.graph(run, int(d), self.start[lanes])))
-        self.work = max((store.works[key] for _, key, _ in self.groups), default=1)
+        self.work = store.code.cost * max((store.works[key] for _, key, _ in self.groups), default=1)
         self.total = int(np.max(np.asarray(0 if run.stops.total is None else run.stops.total), initial=0))
         latest = bounds_of((float(run.span[0]), float(run.span[1])))[1]
         self.values: dict[str, Any] = {**arg_values(run.field.args, len(run.shape)), **run.limits._asdict()}

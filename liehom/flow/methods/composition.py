@@ -73,10 +73,7 @@ class Composition(Step):
             sizes = (*around, *((1 - double * c) * x for x in sizes), *around)
         object.__setattr__(self, "sizes", sizes)
 
-    @property
-    def symmetric(self) -> bool:
-        """Whether a step of size -h is the inverse of a step of size h: True."""
-        return True
+    symmetric = True
 
     @property
     def prepares_by_psi(self) -> bool:
@@ -150,14 +147,8 @@ class Splitting(Step):
             raise InputError(f"the parts are a sequence of generators, got {parts!r}")
         self.parts: tuple[GeneratorLike, ...] | None = None if parts is None else tuple(parts)
 
-    @property
-    def order(self) -> int:
-        return 2
-
-    @property
-    def symmetric(self) -> bool:
-        """Whether a step of size -h is the inverse of a step of size h: True."""
-        return True
+    order = 2
+    symmetric = True
 
     @property
     def prepares_by_psi(self) -> bool:

@@ -47,9 +47,7 @@ class Euler(OneExponential):
     1
     """
 
-    @property
-    def order(self) -> int:
-        return 1
+    order = 1
 
     def generator(self, action: Action, psi: Generator, m: Values, t: Values, h: Values) -> Values:
         return h * psi(m, t)
@@ -72,9 +70,7 @@ class BackwardEuler(OneExponential):
     1
     """
 
-    @property
-    def order(self) -> int:
-        return 1
+    order = 1
 
     def generator(self, action: Action, psi: Generator, m: Values, t: Values, h: Values) -> Values:
         start = zeros(m, (*np.shape(m)[:-1], action.dimension))
@@ -92,9 +88,7 @@ class Heun(OneExponential):
     2
     """
 
-    @property
-    def order(self) -> int:
-        return 2
+    order = 2
 
     def generator(self, action: Action, psi: Generator, m: Values, t: Values, h: Values) -> Values:
         first = psi(m, t)
@@ -327,9 +321,7 @@ class CrouchGrossman3(ProductStep):
     (3, array([0.25]))
     """
 
-    @property
-    def order(self) -> int:
-        return 3
+    order = 3
 
     @property
     def scheme(self) -> Scheme:
@@ -355,9 +347,7 @@ class CommutatorFree4(ProductStep):
     (2, array([1.]))
     """
 
-    @property
-    def order(self) -> int:
-        return 4
+    order = 4
 
     @property
     def scheme(self) -> Scheme:

@@ -143,14 +143,8 @@ class VariationalMidpoint(OneExponential):
     (True, True)
     """
 
-    @property
-    def order(self) -> int:
-        return 2
-
-    @property
-    def symmetric(self) -> bool:
-        """Whether a step of size -h is the inverse of a step of size h: True."""
-        return True
+    order = 2
+    symmetric = True
 
     def generator(self, action: Action, psi: Generator, m: Values, t: Values, h: Values) -> Values:
         require_exponential(action, "VariationalMidpoint")
@@ -232,14 +226,8 @@ class SphericalMidpoint(Step):
 
     _checked: ClassVar[bool] = False  # by `prepare`
 
-    @property
-    def order(self) -> int:
-        return 2
-
-    @property
-    def symmetric(self) -> bool:
-        """Whether a step of size -h is the inverse of a step of size h: True."""
-        return True
+    order = 2
+    symmetric = True
 
     def prepare(self, action: Action, psi: Generator, m: Values, t: Values) -> SphericalMidpoint:
         """The step, after a check of the representation."""
@@ -350,14 +338,8 @@ class IsospectralMidpoint(Step):
         if self.matrices is not None and not isinstance(self.matrices, Representation):
             raise InputError(f"the matrices are a Representation, got {self.matrices!r}")
 
-    @property
-    def order(self) -> int:
-        return 2
-
-    @property
-    def symmetric(self) -> bool:
-        """Whether a step of size -h is the inverse of a step of size h: True."""
-        return True
+    order = 2
+    symmetric = True
 
     def prepare(self, action: Action, psi: Generator, m: Values, t: Values) -> IsospectralMidpoint:
         """The step with the matrices of the algebra."""
@@ -446,19 +428,9 @@ class MoserVeselov(Step):
     _coordinates: ClassVar[MatrixCoordinates | None] = None  # of `prepare`, as is the next one
     _inertia: ClassVar[Inertia | None] = None
 
-    @property
-    def order(self) -> int:
-        return 2
-
-    @property
-    def symmetric(self) -> bool:
-        """Whether a step of size -h is the inverse of a step of size h: True."""
-        return True
-
-    @property
-    def prepares_by_psi(self) -> bool:
-        """Whether `prepare` calls psi: True, as it finds J."""
-        return True
+    order = 2
+    symmetric = True
+    prepares_by_psi = True
 
     @property
     def trace_key(self) -> Hashable:

@@ -22,6 +22,7 @@ from liehom.flow.series import node as recurrences
 from liehom.flow.series.arrays import across_lanes, constant_like, elementary, is_jax, is_lazy, namespace, solve, zeros
 from liehom.flow.series.jet import WITHOUT_SERIES, Jet, Operand, as_jet, dispatch, frozen, holds_jets, nodes
 from liehom.flow.series.node import FUNCTIONS, Node
+from liehom.flow.tracing.sweeps import CHAINED, SLOPES
 
 # Numpy's ufuncs (arithmetic and elementary functions) for Jets; those that are in no table raise `SeriesError`.
 
@@ -182,6 +183,13 @@ def _logaddexp(x: Operand, y: Operand) -> Node:
     return (larger + np.log(np.exp(a - larger) + np.exp(b - larger))).node
 
 
+def _chained(name: str, u: Node) -> Node:
+    """Node of the function of a name, by its slope."""
+    x = Jet.from_node(u)
+    return recurrences.chain(u, elementary(name, u.value), lambda f: SLOPES[name](x, Jet.from_node(f)).node)
+
+
+FUNCTIONS.update({name: partial(_chained, name) for name in CHAINED})
 OPERATORS: dict[str, Callable[..., Node]] = {
     "multiply": lambda x, y: recurrences.product(*nodes(x, y)), "divide": _divide, "power": _power,
     "float_power": _power, "arctan2": _arctan2, "hypot": _hypot, "logaddexp": _logaddexp,
@@ -252,7 +260,7 @@ def apply_function(
 
 def method(jet: Jet, name: str) -> Callable[..., Any]:
     """The method of arrays with this name, for a Jet."""
-    if name in recurrences.FUNCTIONS or name in ("arctan2", "hypot", "logaddexp"):
+    if name in FUNCTIONS or name in ("arctan2", "hypot", "logaddexp"):
         return partial(getattr(np, name), jet)
     if name in METHODS:
         return partial(_method, jet, name)

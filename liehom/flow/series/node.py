@@ -327,19 +327,10 @@ def real_power(u: Node, exponent: Fraction | Number | float, value: Values | Non
     return node
 
 
-def _inverse_root(u: Node) -> Node:
-    """Node of u ** (-1/2)."""
-    return _over_one(FUNCTIONS["sqrt"](u))
-
-
 def _multiple(u: Node, name: str, argument: int, divide: bool = False) -> Node:
     """Node of u times, or divided by, the number name(argument), such as log 2."""
     number = elementary(name, _one(u.value) * argument)
     return linear((lambda x: x / number) if divide else (lambda x: x * number), [u])
-
-
-def _plus(node: Node, number: int) -> Node:
-    return add(node, constant(_one(node.value) * number, node.order))
 
 
 def _one(value: Values) -> Values:
@@ -348,14 +339,6 @@ def _one(value: Values) -> Values:
 
 def _over_one(node: Node) -> Node:
     return quotient(constant(_one(node.value), node.order), node)
-
-
-def _negative(node: Node) -> Node:
-    return linear(neg, [node])
-
-
-def _square(node: Node) -> Node:
-    return product(node, node)
 
 
 def _pair(u: Node, first: str, second: str, sign: int) -> tuple[Node, Node]:
@@ -367,30 +350,12 @@ def _pair(u: Node, first: str, second: str, sign: int) -> tuple[Node, Node]:
     return one, other
 
 
-# name of the numpy function -> its series; a new function is one line
+# name of the numpy function -> its series; `jet_functions` adds those that follow from their slopes
 FUNCTIONS: dict[str, Callable[[Node], Node]] = {
-    "exp": lambda u: chain(u, elementary("exp", u.value), lambda f: f),
-    "expm1": lambda u: chain(u, elementary("expm1", u.value), lambda f: _plus(f, 1)),
-    "log": lambda u: chain(u, elementary("log", u.value), lambda _: _over_one(u)),
-    "log1p": lambda u: chain(u, elementary("log1p", u.value), lambda _: _over_one(_plus(u, 1))),
     "sin": lambda u: _pair(u, "sin", "cos", -1)[0],
     "cos": lambda u: _pair(u, "sin", "cos", -1)[1],
-    "tan": lambda u: chain(u, elementary("tan", u.value), lambda f: _plus(_square(f), 1)),
     "sinh": lambda u: _pair(u, "sinh", "cosh", 1)[0],
     "cosh": lambda u: _pair(u, "sinh", "cosh", 1)[1],
-    "tanh": lambda u: chain(u, elementary("tanh", u.value), lambda f: _plus(_negative(_square(f)), 1)),
-    "arctan": lambda u: chain(u, elementary("arctan", u.value), lambda _: _over_one(_plus(_square(u), 1))),
-    "arcsin": lambda u: chain(
-        u, elementary("arcsin", u.value), lambda _: _inverse_root(_plus(_negative(_square(u)), 1))
-    ),
-    "arccos": lambda u: chain(
-        u, elementary("arccos", u.value), lambda _: _negative(_inverse_root(_plus(_negative(_square(u)), 1)))
-    ),
-    "arcsinh": lambda u: chain(u, elementary("arcsinh", u.value), lambda _: _inverse_root(_plus(_square(u), 1))),
-    "arccosh": lambda u: chain(
-        u, elementary("arccosh", u.value), lambda _: product(_inverse_root(_plus(u, -1)), _inverse_root(_plus(u, 1)))
-    ),
-    "arctanh": lambda u: chain(u, elementary("arctanh", u.value), lambda _: _over_one(_plus(_negative(_square(u)), 1))),
     "exp2": lambda u: chain(u, elementary("exp2", u.value), lambda f: _multiple(f, "log", 2)),
     "log2": lambda u: chain(u, elementary("log2", u.value), lambda _: _multiple(_over_one(u), "log", 2, divide=True)),
     "log10": lambda u: chain(
@@ -398,9 +363,9 @@ FUNCTIONS: dict[str, Callable[[Node], Node]] = {
     ),
     "sqrt": lambda u: real_power(u, Fraction(1, 2), elementary("sqrt", u.value)),
     "cbrt": lambda u: real_power(u, Fraction(1, 3), elementary("cbrt", u.value)),
-    "square": _square,
+    "square": lambda u: product(u, u),
     "reciprocal": _over_one,
-    "negative": _negative,
+    "negative": lambda u: linear(neg, [u]),
 }
 
 

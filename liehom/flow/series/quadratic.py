@@ -11,11 +11,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from functools import partial, reduce
 from operator import add
-from typing import Any, TypeAlias, cast, final
+from typing import Any, TypeAlias, final
 
 from liehom.base.typing import Values
 from liehom.flow.tracing.array import Traced
-from liehom.flow.tracing.graph import Expr, Tape, needed
+from liehom.flow.tracing.graph import Expr, needed
 
 Quadratic: TypeAlias = dict[tuple[int, ...], Expr]
 """A polynomial of degree 2 at most: a coefficient for each product of coordinates, () for 1."""
@@ -26,7 +26,7 @@ class AffineFlow:
     """The expansion of the flow for a traced generator psi of degree 1, with the methods of a `Flow`."""
 
     def __init__(self, points: Sequence[Sequence[Expr]], affine: Sequence[Quadratic]) -> None:
-        self._points, self._affine, self._tape = points, affine, cast(Tape, points[0][0].tape)
+        self._points, self._affine, self._tape = points, affine, points[0][0].tape
 
     def point(self, k: int) -> Traced:
         """Coefficient k of the flow, shape (N,)."""
@@ -93,7 +93,7 @@ def _points(
     x: list[list[Expr]], rows: Sequence[Quadratic], order: int, inner: Callable[[int, float], list[Expr]]
 ) -> list[list[Expr]]:
     """The coefficients x_0, ..., x_n, which are appended to x."""
-    n, zero = len(rows), cast(Tape, x[0][0].tape).zero
+    n, zero = len(rows), x[0][0].tape.zero
     # J, and X(x_0) = (J + L) x_0 / 2 + constants
     slopes: list[list[list[Expr]]] = [[[] for _ in range(n)] for _ in range(n)]
     for row, slope in zip(rows, slopes, strict=True):
@@ -115,7 +115,7 @@ def _points(
 
 def _linear(affine: Sequence[Quadratic], x: Sequence[Expr], *, constant: bool = False) -> list[Expr]:
     """The linear part of polynomials of degree 1 at x, or all of it."""
-    zero = cast(Tape, x[0].tape).zero
+    zero = x[0].tape.zero
     return [_sum([zero, *[c * x[e[0]] if e else c for e, c in row.items() if e or constant]]) for row in affine]
 
 

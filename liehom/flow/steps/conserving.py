@@ -75,12 +75,9 @@ def solve_levels(
     without the equations that isotropy does not reach.
     """
     units: Any = np.maximum(unit, float(np.finfo(first.dtype).tiny))
-    if type(first) is Traced:
-        return _on_tape(residual, first, directions[:, 0], jacobian[0, 0], units, size)
-    start: Any = first
+    if jacobian.shape[-2:] == (1, 1):
+        return _of_one(residual, first[..., 0], directions[..., 0], jacobian[..., 0, 0], units[..., 0], size)
     slope: Any = jacobian
-    if jacobian.shape == (1, 1):
-        return _of_one(residual, start, directions[:, 0], slope.item(), units.item(), size)
     project, lift, slopes, kept = _reduced(slope / units[..., None], MIN_RESOLVED_UNITS * size)
     resolved = kept.sum(axis=-1)
     r = (project @ (first / units)[..., None])[..., 0]
@@ -108,47 +105,20 @@ def solve_levels(
 
 
 def _of_one(
-    residual: Callable[[Any], Any], first: Array, direction: Array, slope: float, unit: float, size: float
+    residual: Callable[[Any], Any], first: Values, direction: Values, slope: Values, unit: Values, size: float
 ) -> LevelSolution:
-    """`solve_levels` for one trajectory, one integral and one direction, without the overhead of arrays."""
-    resolved = abs(slope) > MIN_RESOLVED_UNITS * size * unit
-    best = value = first.item()
-    if not resolved or not abs(value) > unit:
-        return LevelSolution(None, first, np.array(0), np.array(int(resolved)))
-    c, x, left = 0.0, None, first
-    iterations = stalled = 0
-    while abs(best) > unit and stalled < MAX_STALLED_ITERATIONS and iterations < MAX_ITERATIONS:
-        step = -best / slope
-        if abs(step) > 1 / size:
-            step = 1 / size if step > 0 else -1 / size
-        trial = (c + step) * direction
-        values = residual(trial)
-        iterations += 1
-        value = values.item()
-        change = (value - best) / step
-        if abs(change) > 1e-3 * abs(slope):
-            slope = change
-        if abs(value) < abs(best):
-            c, x, best, left = c + step, trial, value, values
-        else:
-            stalled += 1
-    return LevelSolution(x, left, np.array(iterations), np.array(1))
-
-
-def _on_tape(
-    residual: Callable[[Any], Any], first: Traced, direction: Traced, slope: Traced, unit: Traced, size: float
-) -> LevelSolution:
-    """`_of_one` in compiled code, in each lane separately."""
-    tape = first.tape
-    resolved = np.abs(slope) > MIN_RESOLVED_UNITS * size * unit[0]
-    start = first[0]
+    """`solve_levels` for one integral and one direction, by the secant method; on tracers in each lane separately."""
+    resolved = np.abs(slope) > MIN_RESOLVED_UNITS * size * unit
+    active = resolved & (np.abs(first) > unit)
+    if not isinstance(active, Traced) and not active.any():
+        return LevelSolution(None, first[..., None], np.zeros(active.shape, dtype=int), resolved.astype(int))
 
     def iteration(
-        c: Values, best: Values, over: Values, stalled: Values, count: Values, active: Values
+        active: Values, c: Values, best: Values, over: Values, stalled: Values, count: Values
     ) -> tuple[list[Values], Values]:
         # 1 / slope is kept, which needs one division less
         step = np.clip(-best * over, -1 / size, 1 / size)
-        value = residual((c + step) * direction)[0]
+        value = residual((c + step)[..., None] * direction)[..., 0]
         change = value - best
         better = active & (np.abs(value) < np.abs(best))
         clear = np.abs(change * over) > 1e-3 * np.abs(step)
@@ -156,21 +126,25 @@ def _on_tape(
         c, best = np.where(better, c + step, c), np.where(better, value, best)
         stalled = np.where(better, stalled, stalled + 1.0)
         count = count + np.where(active, 1.0, 0.0)
-        active = active & (np.abs(best) > unit[0]) & (stalled < MAX_STALLED_ITERATIONS)
-        return [c, best, over, stalled, count, active], active
+        active = active & (np.abs(best) > unit) & (stalled < MAX_STALLED_ITERATIONS)
+        return [active, c, best, over, stalled, count], active
 
-    active = resolved & (np.abs(start) > unit[0])
-    over = 1.0 / np.where(resolved, slope, 1.0)
-    c, best, _, _, count, _ = while_loop(iteration, [0.0, start, over, 0.0, 0.0, active], tape, MAX_ITERATIONS)
-    return LevelSolution(c * direction, best[None], count, np.where(resolved, 1, 0))
+    zero = np.zeros(np.shape(first))
+    state: list[Any] = [active, zero, first, 1.0 / np.where(resolved, slope, 1.0), zero, zero]
+    if isinstance(active, Traced):
+        state = list(while_loop(iteration, state, active.tape, MAX_ITERATIONS))
+        return LevelSolution(state[1] * direction, state[2][None], state[5], np.where(resolved, 1, 0))
+    for _ in range(MAX_ITERATIONS):
+        state, _active = iteration(*state)
+        if not state[0].any():
+            break
+    return LevelSolution(
+        state[1][..., None] * direction, state[2][..., None], state[5].astype(int), resolved.astype(int)
+    )
 
 
 def _reduced(jacobian: Array, cutoff: float) -> tuple[Array, Array, Array, BooleanArray]:
     """(U^T, V, S, mask of the singular values above the cutoff) of a singular value decomposition."""
-    if jacobian.shape[-2:] == (1, 1):
-        one, slopes = np.ones_like(jacobian), jacobian[..., 0]
-        kept = np.abs(slopes) > cutoff
-        return kept[..., None] * one, one, slopes, kept
     left, slopes, right = np.linalg.svd(np.nan_to_num(np.asarray(jacobian, dtype=np.float64)), full_matrices=False)
     kept = (slopes > cutoff) & (slopes > RANK_RTOL * slopes[..., :1])
     project, lift = np.swapaxes(left * kept[..., None, :], -1, -2), np.swapaxes(right * kept[..., None], -1, -2)
@@ -666,19 +640,14 @@ class Conserving(Step):
         """`base_order` of the base, an int."""
         return self.step.base_order
 
-    @property
-    def uses_isotropy(self) -> bool:
-        """Whether the step asks for isotropy frames: True."""
-        return True
+    uses_isotropy = True
 
     @property
     def kept_order(self) -> int | None:
         """The n of (7.2), after `prepare`; None if all E_n computed vanish."""
         return None if self._begun is None else self._begun.n
 
-    @property
-    def prepares_by_psi(self) -> bool:
-        return True
+    prepares_by_psi = True
 
     @property
     def trace_key(self) -> Hashable:

@@ -589,10 +589,7 @@ class Corrected(Step):
         """Order of the base, an int."""
         return self.step.order
 
-    @property
-    def uses_isotropy(self) -> bool:
-        """Whether the step asks for isotropy frames: True."""
-        return True
+    uses_isotropy = True
 
     @property
     def prepares_by_psi(self) -> bool:

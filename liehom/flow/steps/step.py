@@ -491,10 +491,7 @@ class OneExponential(Step, ABC):
     True
     """
 
-    @property
-    def one_exponential(self) -> bool:
-        """Whether `factors` is always a single generator: True."""
-        return True
+    one_exponential = True
 
     def generator(self, action: Action, psi: Generator, m: Values, t: Values, h: Values) -> Values:
         """The generator xi(m, t, h) of the step, array or Jet of shape (..., dim g)."""

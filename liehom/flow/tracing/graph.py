@@ -9,7 +9,7 @@ import operator
 from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass
 from types import ModuleType
-from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeAlias, final
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias, final
 
 import numpy as np
 import numpy.typing as npt
@@ -81,20 +81,6 @@ FOLDED |= {"coarse_log2": _coarse_log2, "coarse_exp2": _coarse_exp2}
 BOOLEAN = frozenset(["lt", "le", "eq", "ne", "and", "or", "not", "flag"])
 
 
-class Recorder(Protocol):
-    """The methods of `liehom.tracing.Tape` that arithmetic on an `Expr` calls."""
-
-    def of(self, x: NumberLike) -> Expr: ...
-    def number(self, x: Expr) -> Expr: ...
-    def add(self, a: Expr, b: Expr) -> Expr: ...
-    def sub(self, a: Expr, b: Expr) -> Expr: ...
-    def mul(self, a: Expr, b: Expr) -> Expr: ...
-    def div(self, a: Expr, b: Expr) -> Expr: ...
-    def neg(self, a: Expr) -> Expr: ...
-    def power(self, a: Expr, b: Expr) -> Expr: ...
-    def call(self, name: str, *args: Expr) -> Expr: ...
-
-
 @final
 class Expr:
     """A tracer: a symbolic number or boolean on a tape.
@@ -115,7 +101,7 @@ class Expr:
 
     __slots__ = ("args", "boolean", "index", "op", "tape", "terms", "value")
 
-    def __init__(self, tape: Recorder, op: str, args: tuple[Expr, ...], value: Payload, index: int) -> None:
+    def __init__(self, tape: Tape, op: str, args: tuple[Expr, ...], value: Payload, index: int) -> None:
         self.tape, self.op, self.args, self.value, self.index = tape, op, args, value, index
         self.terms: dict[Expr, float] | Literal[False] | None = None
         self.boolean = op in BOOLEAN

@@ -6,7 +6,7 @@ import ctypes
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
-from itertools import count, pairwise
+from itertools import count
 from typing import Any, TypeAlias, final
 
 import numpy as np
@@ -248,7 +248,8 @@ def _dimensions(x: Operand) -> int:
 #
 # A stage computes psi at a site from the numbers that earlier stages stored there and at shifted sites, and stores the
 # point of the next stage. Numbers are stored in planes, one for each coordinate, with a margin that repeats the sites
-# on the other side of the lattice; a row of sites is computed W at a time.
+# on the other side of the lattice. A stage goes through a plane from the first site to the last, W positions at a time;
+# what it stores in the margins between them is replaced.
 
 Plane: TypeAlias = tuple[str, int, int]
 """Plane: "m" the point, "y" points of stages, "f" values of psi, "e" the error, "w" noise, "array" given numbers."""
@@ -256,8 +257,7 @@ Plane: TypeAlias = tuple[str, int, int]
 PAGE, SKEW = 512, 80
 """Planes begin 80 numbers beyond a multiple of 512: planes that begin alike compete for the same cache lines."""
 SITES_FOR_THREADS = 20_000
-"""Sites from which on threads share the rows of a stage."""
-ARGUMENTS = "ptr %planes, ptr %rows, i64 %first, i64 %last, i64 %columns, double %time, double %size"
+"""Sites from which on threads share a stage."""
 
 
 @final
@@ -271,37 +271,29 @@ class Stage:
 
 @final
 class Layout:
-    """Positions of the sites of a lattice in a plane."""
+    """Positions of the sites of a lattice in a plane, with margins of given widths."""
 
     def __init__(self, sites: tuple[int, ...], reach: tuple[int, ...], width: int) -> None:
         self.sites, self.reach = sites, reach
-        columns = -(-sites[-1] // width) * width
-        left = -(-reach[-1] // width) * width  # rows begin at multiples of the width
-        row = left + max(columns, sites[-1] + reach[-1])
-        self.shape = (*(n + 2 * r for n, r in zip(sites[:-1], reach[:-1], strict=True)), -(-row // width) * width)
-        self.first = (*reach[:-1], left)
-        self.size = -(-(int(np.prod(self.shape)) + width) // PAGE) * PAGE + SKEW
+        self.shape = tuple(n + 2 * r for n, r in zip(sites, reach, strict=True))
         self.strides = tuple(int(np.prod(self.shape[k + 1 :])) for k in range(len(sites)))
-        starts = [np.arange(n) + a for n, a in zip(sites[:-1], self.first[:-1], strict=True)]
-        places = np.zeros((1,) * max(len(starts), 1), dtype=np.int64)
-        for k, start in enumerate(starts):
-            places = places + (start * self.strides[k]).reshape([-1 if i == k else 1 for i in range(len(starts))])
-        self.rows: IntegerArray = (places.reshape(-1) + left).astype(np.int64)
+        self.begin = self.distance(reach)
+        self.end = self.begin + self.distance(tuple(n - 1 for n in sites)) + 1
+        self.size = -(-(int(np.prod(self.shape)) + width) // PAGE) * PAGE + SKEW
         self.targets, self.sources = self._margins()
 
     def _margins(self) -> tuple[IntegerArray, IntegerArray]:
         """Positions in the margins, and of the sites that they repeat."""
         ranges = [np.arange(-r, n + r) for n, r in zip(self.sites, self.reach, strict=True)]
         grid = np.stack(np.meshgrid(*ranges, indexing="ij"), axis=-1).reshape(-1, len(self.sites))
-        sites = np.array(self.sites)
-        outside = ((grid < 0) | (grid >= sites)).any(axis=-1)
-        targets, strides = grid[outside], np.array(self.strides)
-        return (targets + self.first) @ strides, (targets % sites + self.first) @ strides
+        sites, strides = np.array(self.sites), np.array(self.strides)
+        targets = grid[((grid < 0) | (grid >= sites)).any(axis=-1)]
+        return (targets + self.reach) @ strides, (targets % sites + self.reach) @ strides
 
     def interior(self, plane: Array) -> Array:
         """A view of the sites of a plane, of the shape of the lattice."""
         numbers = plane[: int(np.prod(self.shape))].reshape(self.shape)
-        return numbers[tuple(slice(a, a + n) for a, n in zip(self.first, self.sites, strict=True))]
+        return numbers[tuple(slice(r, r + n) for r, n in zip(self.reach, self.sites, strict=True))]
 
     def distance(self, offset: Sequence[int]) -> int:
         """Difference of the positions of a shifted site and the site."""
@@ -318,21 +310,19 @@ class LatticeKernel:
         self._bound = {x.value: (k, graph) for k, stage in enumerate(stages) for x, graph in stage.values}
         self._loads: list[dict[int, tuple[Plane, tuple[int, ...]]]] = [self._loaded(k) for k in range(len(stages))]
         self._store_values()
-        reach = np.zeros((1, len(inputs.sites)), dtype=int)
-        shifts = [offset for loads in self._loads for _, offset in loads.values()]
+        loads = [load for loads in self._loads for load in loads.values()]
+        reach = np.abs([(0,) * len(inputs.sites), *[offset for _, offset in loads]]).max(axis=0)
         width = lanes_per_register()
-        self.layout = Layout(
-            inputs.sites, tuple(int(r) for r in np.abs(np.concatenate([reach, np.array(shifts)])).max(axis=0)), width
-        )
+        self.layout = Layout(inputs.sites, tuple(map(int, reach)), width)
         # the last stage writes over the point that it reads at the site, unless it reads it at shifted sites too
         self.swaps = any(plane[0] == "m" and any(offset) for plane, offset in self._loads[-1].values())
         names = [
-            *[plane for loads in self._loads for plane, _ in loads.values()],
-            *[self._target(k, plane) for k, stage in enumerate(stages) for plane, _ in stage.stores],
+            *[plane for plane, _ in loads],
+            *[self._target(plane) for stage in stages for plane, _ in stage.stores],
             *[("m", 0, c) for c in range(coordinates)],
         ]
         self.places = {plane: i for i, plane in enumerate(dict.fromkeys(names))}
-        self._shifted = {plane for loads in self._loads for plane, offset in loads.values() if any(offset)}
+        self._shifted = {plane for plane, offset in loads if any(offset)}
         self.planes: Array = np.zeros((len(self.places), self.layout.size))
         for plane, i in self.places.items():
             if plane[0] == "array":
@@ -341,9 +331,10 @@ class LatticeKernel:
         self._table = (self.planes.ctypes.data + step * np.arange(len(self.planes))).astype(np.uint64)
         self.text: str = self._module(width)
         self._engine, self.cached = engine_of(self.text)
+        kinds = {"run": "piippiiidd"} | {f"{s}{k}": t for k in range(len(stages)) for s, t in _ARGUMENTS.items()}
+        address = self._engine.get_function_address
         self._functions = {
-            name: ctypes.CFUNCTYPE(None, *kinds)(self._engine.get_function_address(name))
-            for name, kinds in self._signatures().items()
+            name: ctypes.CFUNCTYPE(None, *map(_KINDS.__getitem__, t))(address(name)) for name, t in kinds.items()
         }
 
     # -- what is loaded and stored -----------------------------------------------------------------------
@@ -370,7 +361,7 @@ class LatticeKernel:
             stage.stores += [(("f", int(x.value), 0), x) for x, _ in stage.values if x.value in wanted]
         self._loads = [self._loaded(k) for k in range(len(self.stages))]
 
-    def _target(self, k: int, plane: Plane) -> Plane:
+    def _target(self, plane: Plane) -> Plane:
         """The plane to which a stage writes: another one for the point if the stage reads it at shifted sites."""
         return ("out", 0, plane[2]) if plane[0] == "m" and self.swaps else plane
 
@@ -379,21 +370,23 @@ class LatticeKernel:
         writers = [self._stage(Writer(width), k) for k in range(len(self.stages))]
         declared = dict.fromkeys(text for w in writers for text in w.declared.values())
         functions = {name: text for w in writers for name, text in w.functions.items()}
-        stages = ["\n".join(w.lines) for w in writers]
-        parts = ["\n".join(declared), *functions.values(), *stages, _MARGINS, self._loop(), _ATTRIBUTES]
-        return "\n\n".join(parts)
+        stages = ["\n".join(w.lines) for w in writers] + [self._after(k) for k in range(len(self.stages))]
+        return "\n\n".join(["\n".join(declared), *functions.values(), *stages, _MARGINS, self._loop(), _ATTRIBUTES])
 
     def _stage(self, w: Writer, k: int) -> Writer:
-        """Write the function of a stage."""
-        v, stage, loads, w.label = w.vector, self.stages[k], self._loads[k], "column"
-        used = dict.fromkeys([*(p for p, _ in loads.values()), *(self._target(k, p) for p, _ in stage.stores)])
-        w.lines += [f"define void @stage{k}({ARGUMENTS}) #0 {{", "entry:"]
+        """Write the function of a stage, for the positions begin, ..., end - 1."""
+        v, stage, loads, w.label = w.vector, self.stages[k], self._loads[k], "site"
+        used = dict.fromkeys([*(p for p, _ in loads.values()), *(self._target(p) for p, _ in stage.stores)])
+        w.lines += [
+            f"define void @stage{k}(ptr %planes, i64 %begin, i64 %end, double %time, double %size) #0 {{",
+            "entry:",
+        ]
         for plane in used:
             place = w.emit(f"getelementptr ptr, ptr %planes, i64 {self.places[plane]}")
             w.lines.append(f"  %p{self.places[plane]} = load ptr, ptr {place}")
         w.lines.append(f"  %t = fadd {v} {w.spread('%time')}, {w.splat(-0.0)}")
         w.lines.append(f"  %h = fadd {v} {w.spread('%size')}, {w.splat(-0.0)}")
-        w.lines.append(_ROW)
+        w.lines += ["  br label %site", "site:", "  %at = phi i64 [%begin, %entry], [%next, %site.end]"]
         names = dict(self._scalars)
         for index, (plane, offset) in loads.items():
             at = w.emit(f"add i64 %at, {self.layout.distance(offset)}")
@@ -407,61 +400,39 @@ class LatticeKernel:
                 names[x.value] = body.name(graph)
         body.write(needed([x for _, x in stage.stores]))
         for plane, x in stage.stores:
-            pointer = w.emit(f"getelementptr double, ptr %p{self.places[self._target(k, plane)]}, i64 %at")
+            pointer = w.emit(f"getelementptr double, ptr %p{self.places[self._target(plane)]}, i64 %at")
             w.lines.append(f"  store {v} {body.name(x)}, ptr {pointer}, align 8")
-        w.lines.append(_ROW_END.replace("WIDTH", str(w.width)))
+        w.lines += ["  br label %site.end", "site.end:", f"  %next = add i64 %at, {w.width}"]
+        w.lines += ["  %more = icmp slt i64 %next, %end", "  br i1 %more, label %site, label %done"]
+        w.lines += ["done:", "  ret void", "}"]
         return w
 
-    def _loop(self) -> str:
-        """The function `run`: all stages of the steps begin, ..., end - 1, margins included."""
-        lines = [
-            "define void @run(ptr %planes, ptr %rows, i64 %nrows, i64 %columns, ptr %to, ptr %from, i64 %margin, "
-            "i64 %begin, i64 %end, double %origin, double %size) #0 {",
-            "entry:",
-            "  br label %step",
-            "step:",
-            "  %k = phi i64 [%begin, %entry], [%k.next, %step]",
-            "  %count = sitofp i64 %k to double",
-            "  %passed = fmul double %count, %size",
-            "  %time = fadd double %origin, %passed",
-        ]
-        for k in range(len(self.stages)):
-            lines.append(
-                f"  call void @stage{k}(ptr %planes, ptr %rows, i64 0, i64 %nrows, i64 %columns, double %time, "
-                "double %size)"
-            )
-            lines += self._after(k)
-        lines += ["  %k.next = add i64 %k, 1", "  %more = icmp slt i64 %k.next, %end"]
-        return "\n".join([*lines, "  br i1 %more, label %step, label %done", "done:", "  ret void", "}"])
-
-    def _after(self, k: int) -> list[str]:
-        """Calls that fill the margins of the planes that a stage stored, and exchange the point and the new one."""
-        lines: list[str] = []
+    def _after(self, k: int) -> str:
+        """The function that fills the margins of the planes that a stage stored, and exchanges the points."""
+        lines = [f"define void @after{k}(ptr %planes, ptr %to, ptr %from, i64 %margin) #0 {{", "entry:"]
         for j, (plane, _) in enumerate(self.stages[k].stores):
-            name, target = f"%s{k}.{j}", self._target(k, plane)
+            target = self._target(plane)
+            if plane in self._shifted or target != plane:
+                lines.append(f"  %a{j} = getelementptr ptr, ptr %planes, i64 {self.places[target]}")
+                lines.append(f"  %new{j} = load ptr, ptr %a{j}")
             if plane in self._shifted:
-                lines += [
-                    f"  {name} = getelementptr ptr, ptr %planes, i64 {self.places[target]}",
-                    f"  {name}.p = load ptr, ptr {name}",
-                    f"  call void @margins(ptr {name}.p, ptr %to, ptr %from, i64 %margin)",
-                ]
+                lines.append(f"  call void @margins(ptr %new{j}, ptr %to, ptr %from, i64 %margin)")
             if target != plane:
-                lines += [
-                    f"  {name}.a = getelementptr ptr, ptr %planes, i64 {self.places[plane]}",
-                    f"  {name}.b = getelementptr ptr, ptr %planes, i64 {self.places[target]}",
-                    f"  {name}.old = load ptr, ptr {name}.a",
-                    f"  {name}.new = load ptr, ptr {name}.b",
-                    f"  store ptr {name}.new, ptr {name}.a",
-                    f"  store ptr {name}.old, ptr {name}.b",
-                ]
-        return lines
+                lines.append(f"  %b{j} = getelementptr ptr, ptr %planes, i64 {self.places[plane]}")
+                lines.append(f"  %old{j} = load ptr, ptr %b{j}")
+                lines += [f"  store ptr %new{j}, ptr %b{j}", f"  store ptr %old{j}, ptr %a{j}"]
+        return "\n".join([*lines, "  ret void", "}"])
+
+    def _loop(self) -> str:
+        """The function `run`: all stages of the steps first, ..., last - 1."""
+        calls = [
+            f"  call void @stage{k}(ptr %planes, i64 %begin, i64 %end, double %time, double %size)\n"
+            f"  call void @after{k}(ptr %planes, ptr %to, ptr %from, i64 %margin)"
+            for k in range(len(self.stages))
+        ]
+        return _RUN.replace("CALLS", "\n".join(calls))
 
     # -- steps -------------------------------------------------------------------------------------------
-    def _signatures(self) -> dict[str, list[type]]:
-        p, i, d = ctypes.c_void_p, ctypes.c_int64, ctypes.c_double
-        stages: dict[str, list[type]] = {f"stage{k}": [p, p, i, i, i, d, d] for k in range(len(self.stages))}
-        return {**stages, "margins": [p, p, p, i], "run": [p, p, i, i, p, p, i, i, i, d, d]}
-
     def put(self, m: Array, name: str = "m") -> None:
         """Store numbers (*sites, N) as the point, or as the noise "w"."""
         for c in range(self.coordinates):
@@ -477,29 +448,23 @@ class LatticeKernel:
         """The point (*sites, N), or the error "e"."""
         return np.stack([self.layout.interior(self._plane((name, 0, c))) for c in range(self.coordinates)], axis=-1)
 
-    def run(self, begin: int, end: int, origin: float, size: float, workers: int = 1) -> None:
-        """Make the steps begin, ..., end - 1 of a size; step k begins at the time origin + k size."""
+    def run(self, first: int, last: int, origin: float, size: float, workers: int = 1) -> None:
+        """Make the steps first, ..., last - 1 of a size; step k begins at the time origin + k size."""
         layout, table = self.layout, self._table.ctypes.data
-        rows, columns = layout.rows, layout.sites[-1]
-        margins = (layout.targets.ctypes.data, layout.sources.ctypes.data, len(layout.targets))
+        margins = layout.targets.ctypes.data, layout.sources.ctypes.data, len(layout.targets)
         if workers <= 1 or layout.size < SITES_FOR_THREADS:
-            self._functions["run"](table, rows.ctypes.data, len(rows), columns, *margins, begin, end, origin, size)
+            self._functions["run"](table, layout.begin, layout.end, *margins, first, last, origin, size)
             return
-        cuts = [(int(a), int(b)) for a, b in pairwise(np.linspace(0, len(rows), workers + 1).astype(int)) if b > a]
+        # whole blocks: the positions behind the end of a block are those of another thread
+        share = -(-(layout.end - layout.begin) // (workers * lanes_per_register())) * lanes_per_register()
+        cuts = [(a, min(a + share, layout.end)) for a in range(layout.begin, layout.end, share)]
         with ThreadPoolExecutor(len(cuts)) as pool:
-            for k in range(begin, end):
-                for j, stage in enumerate(self.stages):
-                    function, time = self._functions[f"stage{j}"], origin + k * size
-                    jobs = [pool.submit(function, table, rows.ctypes.data, a, b, columns, time, size) for a, b in cuts]
-                    for job in jobs:
+            for k in range(first, last):
+                for j in range(len(self.stages)):
+                    stage, time = self._functions[f"stage{j}"], origin + k * size
+                    for job in [pool.submit(stage, table, a, b, time, size) for a, b in cuts]:
                         job.result()
-                    for plane, _ in stage.stores:
-                        target = self._target(j, plane)
-                        if plane in self._shifted:
-                            self._functions["margins"](int(self._table[self.places[target]]), *margins)
-                        if target != plane:
-                            a, b = self.places[plane], self.places[target]
-                            self._table[[a, b]] = self._table[[b, a]]
+                    self._functions[f"after{j}"](table, *margins)
 
     def _plane(self, plane: Plane) -> Array:
         """The plane of a name: the planes of the point and of the new one change places."""
@@ -507,27 +472,23 @@ class LatticeKernel:
         return self.planes[offset // self.planes.strides[0]]
 
 
+_KINDS: dict[str, Any] = {"p": ctypes.c_void_p, "i": ctypes.c_int64, "d": ctypes.c_double}
+_ARGUMENTS = {"stage": "piidd", "after": "pppi"}  # kinds of arguments, and those of the functions of a stage
 _ATTRIBUTES = 'attributes #0 = { nounwind "prefer-vector-width"="512" }\n!0 = !{!"branch_weights", i32 1, i32 1000}\n'
-_ROW = """\
-  br label %row
-row:
-  %r = phi i64 [%first, %entry], [%r.next, %row.end]
-  %place = getelementptr i64, ptr %rows, i64 %r
-  %base = load i64, ptr %place
-  br label %column
-column:
-  %c = phi i64 [0, %row], [%c.next, %column.end]
-  %at = add i64 %base, %c"""
-_ROW_END = """\
-  br label %column.end
-column.end:
-  %c.next = add i64 %c, WIDTH
-  %wide = icmp slt i64 %c.next, %columns
-  br i1 %wide, label %column, label %row.end
-row.end:
-  %r.next = add i64 %r, 1
-  %more = icmp slt i64 %r.next, %last
-  br i1 %more, label %row, label %done
+_RUN = """\
+define void @run(ptr %planes, i64 %begin, i64 %end, ptr %to, ptr %from, i64 %margin, i64 %first, i64 %last, \
+double %origin, double %size) #0 {
+entry:
+  br label %step
+step:
+  %k = phi i64 [%first, %entry], [%k.next, %step]
+  %count = sitofp i64 %k to double
+  %passed = fmul double %count, %size
+  %time = fadd double %origin, %passed
+CALLS
+  %k.next = add i64 %k, 1
+  %more = icmp slt i64 %k.next, %last
+  br i1 %more, label %step, label %done
 done:
   ret void
 }"""

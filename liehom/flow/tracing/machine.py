@@ -172,6 +172,9 @@ class Kernel:
     """
 
     engine: ClassVar[str] = "llvm"  # as reports name it
+    in_lockstep: ClassVar[bool] = True  # whether lanes make steps of one size together, without stops of their own
+    tracing: ClassVar[dict[str, Any]] = {}  # options of a trace
+    cost: ClassVar[int] = 1  # duration of an operation, in units of one of machine code
 
     def __init__(self, graph: StepGraph, width: int) -> None:
         self.graph, self.width = graph, width

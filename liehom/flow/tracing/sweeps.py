@@ -5,15 +5,15 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from math import ceil, log2
-from types import ModuleType, SimpleNamespace
+from types import ModuleType
 from typing import Any, TypeAlias, final
 
 import numpy as np
-import numpy.typing as npt
 
 from liehom.base.errors import TraceError
 from liehom.base.typing import Array
-from liehom.flow.tracing.graph import COARSE, OPERATORS, Expr, Tape, needed
+from liehom.flow.tracing.array import Traced, entire_function
+from liehom.flow.tracing.graph import COARSE, OPERATORS, Expr, needed
 from liehom.flow.tracing.llvm_text import SHORT_SERIES_REACH, rotation_series
 
 # Derivatives of a recorded graph in reverse mode: one pass backwards gives all partial derivatives as graphs, at a
@@ -21,8 +21,6 @@ from liehom.flow.tracing.llvm_text import SHORT_SERIES_REACH, rotation_series
 
 Number: TypeAlias = Any
 """A number of a graph, or an array of such numbers."""
-Arithmetic: TypeAlias = Any
-"""A `Tape`, or an object with its methods add, sub, mul, ..., on other numbers."""
 
 SINQ_TERMS = 10
 """Terms of the derivative of sin(r)/r by r^2, for |r| <= 1."""
@@ -37,18 +35,18 @@ def gradient(output: Expr, inputs: Sequence[Expr]) -> list[Expr]:
     for x in order:
         if x.index not in moving and any(a.index in moving for a in x.args):
             moving.add(x.index)
-    seeds = {output.index: tape.one}
+    seeds: dict[int, Any] = {output.index: Traced(tape, tape.one)}
     for x in reversed(order):
         seed = seeds.get(x.index)
         if seed is None or x.index in wanted or x.index not in moving:
             continue
-        slopes = partials(tape, x.op, x.args, x, fixed_exponent=x.op == "pow" and x.args[1].constant)
-        for argument, partial in zip(x.args, slopes, strict=True):
+        args = [Traced(tape, a) for a in x.args]
+        slopes = partials(x.op, args, Traced(tape, x), fixed_exponent=x.op == "pow" and x.args[1].constant)
+        for argument, slope in zip(x.args, slopes, strict=True):
             if argument.index in moving and not argument.boolean:
-                part = tape.mul(seed, partial)
-                known = seeds.get(argument.index)
-                seeds[argument.index] = part if known is None else tape.add(known, part)
-    return [seeds.get(x.index, tape.zero) for x in inputs]
+                part = seed * slope
+                seeds[argument.index] = seeds[argument.index] + part if argument.index in seeds else part
+    return [seeds[x.index].entry if x.index in seeds else tape.zero for x in inputs]
 
 
 def evaluated(outputs: Sequence[Expr], inputs: Mapping[int, Any]) -> list[Any]:
@@ -60,108 +58,108 @@ def evaluated(outputs: Sequence[Expr], inputs: Mapping[int, Any]) -> list[Any]:
         elif x.op == "input":
             values[x.index] = inputs[x.value]
         else:
-            function = IN_NUMPY.get(x.op) or getattr(np, x.op, None)
-            if function is None:
-                raise TraceError(f"the operation {x.op} of a recorded function has no counterpart in numpy")
-            values[x.index] = function(*[values[a.index] for a in x.args])
+            values[x.index] = applied(np, x.op, [values[a.index] for a in x.args])
     return [values[x.index] for x in outputs]
 
 
-IN_NUMPY: dict[str, Callable[..., Any]] = {
-    **OPERATORS, **COARSE, "and": np.logical_and, "not": np.logical_not, "select": np.where, "abs": np.abs,
-    "sinq": lambda q: rotation(q, 1), "cosq": lambda q: rotation(q, 0),
-}  # fmt: skip
+# names in numpy of operations that have another one
+NAMES = {"and": "logical_and", "not": "logical_not", "select": "where"}
 
 
-def rotation(square: npt.ArrayLike, first: int) -> Array:
-    """sin(r)/r (first = 1) or cos(r) (first = 0) of r^2, hyperbolic for r^2 < 0."""
-    q: Array = np.asarray(square, dtype=np.float64)
-    r = np.sqrt(np.abs(q))
-    grown = np.where(q < 0, r, 0.0)
-    if not first:
-        return np.where(q < 0, np.cosh(grown), np.cos(r))
-    safe = np.where(r == 0, 1.0, r)
-    return np.where(r == 0, 1.0, np.where(q < 0, np.sinh(grown), np.sin(r)) / safe)
+def applied(xp: ModuleType, op: str, args: Sequence[Number]) -> Any:
+    """The value of an elementary operation, by numpy or by JAX."""
+    if op in ("sinq", "cosq"):
+        return rotation(xp, args[0], int(op == "sinq"))
+    if op in COARSE:
+        return COARSE[op](args[0], xp)
+    function = OPERATORS.get(op) or getattr(xp, NAMES.get(op, op), None)
+    if function is None:
+        raise TraceError(f"the operation {op} of a recorded function is not known to {xp.__name__}")
+    return function(*args)
 
 
-def partials(
-    ops: Arithmetic, op: str, args: Sequence[Number], value: Number, *, fixed_exponent: bool = False
-) -> tuple[Number, ...]:
-    """The partial derivatives of an operation by its arguments, one for each."""
-    one = ops.one
+def rotation(xp: ModuleType, q: Number, first: int) -> Any:
+    """sin(r)/r (first = 1) or cos(r) (first = 0) with r^2 = q; neither value nor derivative of any branch overflows."""
+    near = xp.abs(q) < SHORT_SERIES_REACH
+    total: Any = 0.0
+    for c in reversed(rotation_series(SHORT_SERIES_REACH, first)):
+        total = total * q + c
+    safe = xp.where(near, 1.0, q)
+    r = xp.sqrt(xp.abs(safe))
+    grown = xp.where(safe > 0, 0.0, r)
+    round_, straight = (xp.sin(r) / r, xp.sinh(grown) / r) if first else (xp.cos(r), xp.cosh(grown))
+    return xp.where(near, total, xp.where(safe > 0, round_, straight))
+
+
+def partials(op: str, args: Sequence[Number], value: Number, *, fixed_exponent: bool = False) -> tuple[Number, ...]:
+    """The partial derivatives of an operation by its arguments, arrays or tracers, one for each."""
     match op:
         case "add":
-            return one, one
+            return 1.0, 1.0
         case "sub":
-            return one, ops.neg(one)
+            return 1.0, -1.0
         case "neg":
-            return (ops.neg(one),)
+            return (-1.0,)
         case "mul":
             return args[1], args[0]
         case "div":
-            return ops.div(one, args[1]), ops.neg(ops.div(value, args[1]))
+            return 1.0 / args[1], -(value / args[1])
         case "pow":
-            slope = ops.mul(args[1], ops.power(args[0], ops.sub(args[1], one)))
-            return slope, ops.zero if fixed_exponent else ops.mul(value, ops.call("log", args[0]))
+            slope = args[1] * np.power(args[0], args[1] - 1.0)
+            return slope, 0.0 if fixed_exponent else value * np.log(args[0])
         case "select":
-            return ops.zero, ops.select(args[0], one, ops.zero), ops.select(args[0], ops.zero, one)
+            return 0.0, np.where(args[0], 1.0, 0.0), np.where(args[0], 0.0, 1.0)
         case "arctan2":
-            size = ops.add(ops.mul(args[0], args[0]), ops.mul(args[1], args[1]))
-            return ops.div(args[1], size), ops.neg(ops.div(args[0], size))
-    rule = _SLOPES.get(op)
-    if rule is None:
+            size = args[0] * args[0] + args[1] * args[1]
+            return args[1] / size, -(args[0] / size)
+    if op not in SLOPES:
         raise TraceError(f"the operation {op} of a recorded function is not differentiated")
-    return (rule(ops, args[0], value),)
+    return (SLOPES[op](args[0], value),)
 
 
-def _scaled(tape: Tape, factor: float, x: Expr) -> Expr:
-    return tape.mul(tape.constant(factor), x)
-
-
-def _one_minus(tape: Tape, x: Expr) -> Expr:
-    return tape.sub(tape.one, tape.mul(x, x))
-
-
-def _one_plus(tape: Tape, x: Expr) -> Expr:
-    return tape.add(tape.one, tape.mul(x, x))
-
-
-def _sinq_slope(tape: Tape, a: Expr, x: Expr) -> Expr:
+def _sinq_slope(q: Number, x: Number) -> Number:
     """Derivative of sin(r)/r by q = r^2: (cos(r) - sin(r)/r) / 2q, and near q = 0 its series."""
-    near = tape.compare("lt", tape.call("abs", a), tape.one)
-    total: Any = tape.zero
+    near = np.abs(q) < 1.0
+    total: Any = 0.0
     for k in range(SINQ_TERMS, 0, -1):
-        total = tape.add(tape.mul(total, a), tape.constant(k * (-1) ** k / math.factorial(2 * k + 1)))
-    safe = tape.select(near, tape.one, a)
-    return tape.select(near, total, tape.div(_scaled(tape, 0.5, tape.sub(tape.call("cosq", a), x)), safe))
+        total = total * q + k * (-1) ** k / math.factorial(2 * k + 1)
+    return np.where(near, total, 0.5 * (_rotation_of("cosq", q) - x) / np.where(near, 1.0, q))
 
 
-# slope of a function of one number: (tape, argument, value) -> derivative
-_SLOPES: dict[str, Callable[[Tape, Expr, Expr], Expr]] = {
-    "sqrt": lambda tape, a, x: tape.div(tape.constant(0.5), x),
-    "cbrt": lambda tape, a, x: tape.div(tape.constant(1 / 3), tape.mul(x, x)),
-    "sin": lambda tape, a, x: tape.call("cos", a),
-    "cos": lambda tape, a, x: tape.neg(tape.call("sin", a)),
-    "tan": lambda tape, a, x: _one_plus(tape, x),
-    "exp": lambda tape, a, x: x,
-    "exp2": lambda tape, a, x: _scaled(tape, math.log(2), x),
-    "expm1": lambda tape, a, x: tape.add(x, tape.one),
-    "log": lambda tape, a, x: tape.div(tape.one, a),
-    "log2": lambda tape, a, x: tape.div(tape.constant(1 / math.log(2)), a),
-    "log10": lambda tape, a, x: tape.div(tape.constant(1 / math.log(10)), a),
-    "log1p": lambda tape, a, x: tape.div(tape.one, tape.add(tape.one, a)),
-    "sinh": lambda tape, a, x: tape.call("cosh", a),
-    "cosh": lambda tape, a, x: tape.call("sinh", a),
-    "tanh": lambda tape, a, x: _one_minus(tape, x),
-    "arcsin": lambda tape, a, x: tape.div(tape.one, tape.call("sqrt", _one_minus(tape, a))),
-    "arccos": lambda tape, a, x: tape.neg(tape.div(tape.one, tape.call("sqrt", _one_minus(tape, a)))),
-    "arctan": lambda tape, a, x: tape.div(tape.one, _one_plus(tape, a)),
-    "arcsinh": lambda tape, a, x: tape.div(tape.one, tape.call("sqrt", _one_plus(tape, a))),
-    "arccosh": lambda tape, a, x: tape.div(tape.one, tape.call("sqrt", tape.neg(_one_minus(tape, a)))),
-    "arctanh": lambda tape, a, x: tape.div(tape.one, _one_minus(tape, a)),
+def _rotation_of(name: str, q: Number) -> Number:
+    """sin(r)/r or cos(r) of r^2, an array or a tracer."""
+    return entire_function(name, q) if isinstance(q, Traced) else applied(np, name, [q])
+
+
+# The slope of a function of one number, from its argument and its value; the first rows are those of series, too.
+SLOPES: dict[str, Callable[[Any, Any], Any]] = {
+    "exp": lambda x, y: y,
+    "expm1": lambda x, y: y + 1,
+    "log": lambda x, y: 1 / x,
+    "log1p": lambda x, y: 1 / (x + 1),
+    "tan": lambda x, y: y * y + 1,
+    "tanh": lambda x, y: 1 - y * y,
+    "arctan": lambda x, y: 1 / (x * x + 1),
+    "arcsin": lambda x, y: 1 / np.sqrt(1 - x * x),
+    "arccos": lambda x, y: -1 / np.sqrt(1 - x * x),
+    "arcsinh": lambda x, y: 1 / np.sqrt(x * x + 1),
+    "arccosh": lambda x, y: 1 / (np.sqrt(x - 1) * np.sqrt(x + 1)),
+    "arctanh": lambda x, y: 1 / (1 - x * x),
+}
+CHAINED = tuple(SLOPES)
+SLOPES |= {
+    "sqrt": lambda x, y: 0.5 / y,
+    "cbrt": lambda x, y: 1 / (3 * y * y),
+    "sin": lambda x, y: np.cos(x),
+    "cos": lambda x, y: -np.sin(x),
+    "sinh": lambda x, y: np.cosh(x),
+    "cosh": lambda x, y: np.sinh(x),
+    "exp2": lambda x, y: math.log(2) * y,
+    "log2": lambda x, y: 1 / (math.log(2) * x),
+    "log10": lambda x, y: 1 / (math.log(10) * x),
     "sinq": _sinq_slope,
-    "cosq": lambda tape, a, x: _scaled(tape, -0.5, tape.call("sinq", a)),
-    "abs": lambda tape, a, x: tape.select(tape.compare("lt", a, tape.zero), tape.constant(-1.0), tape.one),
+    "cosq": lambda q, y: -0.5 * _rotation_of("sinq", q),
+    "abs": lambda x, y: np.where(x < 0, -1.0, 1.0),
 }
 
 
@@ -197,13 +195,12 @@ class Sweeps:
         if x.op == "expv":  # exp(A) v, shape (n, L), of the entries of A and v
             matrix, vector = self._parts(x.value, args)
             return np.moveaxis((exponentials(matrix) @ vector[..., None])[..., 0], -1, 0)
-        function = _OPERATIONS.get(x.op) or getattr(np, x.op, None)
-        if function is None:
+        if x.op in ("loop", "map", "table"):
             raise TraceError(
-                f"the derivative of a step with {'an iteration' if x.op == 'loop' else f'the operation {x.op}'} is "
-                "not known: take an explicit method, or differentiate with JAX (engine='jax')"
+                "the derivative of a step with an iteration is not known: take an explicit method, or differentiate "
+                "with JAX (engine='jax')"
             )
-        return function(*args)
+        return applied(np, x.op, args)
 
     def _parts(self, places: tuple[tuple[int, int], ...], args: list[Any]) -> tuple[Array, Array]:
         n = len(args) - len(places)
@@ -246,7 +243,7 @@ class Sweeps:
             parts = [None, np.where(where, seed, 0.0), np.where(where, 0.0, seed)]
         else:
             fixed = x.op == "pow" and x.args[1].constant
-            slopes = partials(_NUMBERS, x.op, args, self._values[x.index], fixed_exponent=fixed)
+            slopes = partials(x.op, args, self._values[x.index], fixed_exponent=fixed)
             parts = [np.where(seed == 0, 0.0, seed * p) for p in slopes]  # also where a branch not taken is infinite
         return [(a, p) for a, p in zip(x.args, parts, strict=True) if not (a.constant or a.boolean)]
 
@@ -280,14 +277,6 @@ def exponentials(matrices: Array) -> Array:
     for _ in range(squarings):
         power = power @ power
     return power
-
-
-_OPERATIONS: dict[str, Callable[..., Any]] = {**IN_NUMPY, "pow": np.power}
-# the methods of `Tape` that derivatives use, on arrays
-_NUMBERS = SimpleNamespace(
-    **_OPERATIONS, one=1.0, zero=0.0, power=np.power, compare=lambda name, a, b: _OPERATIONS[name](a, b),
-    call=lambda name, a: (_OPERATIONS.get(name) or getattr(np, name))(a), constant=float,
-)  # fmt: skip
 
 
 # A graph as a function on JAX arrays, to be compiled by jax.jit; it can be differentiated and vmapped.
@@ -341,7 +330,7 @@ def _entries(jnp: ModuleType, x: Expr, values: Mapping[int, JaxArray]) -> Any:
         name, size = x.value
         lists = [_array(jnp, x.args[i : i + size], values) for i in range(0, len(x.args), size)]
         axes = max(a.ndim for a in lists)
-        return _applied(jnp, name, [a.reshape(size, *[1] * (axes - a.ndim), *a.shape[1:]) for a in lists])
+        return applied(jnp, name, [a.reshape(size, *[1] * (axes - a.ndim), *a.shape[1:]) for a in lists])
     table, first = x.value
     places, factors = table.padded()
     some = x.args[:first], x.args[first:]
@@ -371,40 +360,7 @@ def _value(
         return args[0][x.value]
     if x.op == "expv":
         return _exponential(jnp, x.value, args)
-    return _applied(jnp, x.op, args)
-
-
-def _applied(jnp: ModuleType, op: str, args: Sequence[JaxArray]) -> Any:
-    """The value of an elementary operation."""
-    if op in ("sinq", "cosq"):
-        return _rotation(jnp, args[0], int(op == "sinq"))
-    if op in COARSE:
-        return COARSE[op](args[0], jnp)
-    function = OPERATORS.get(op) or getattr(jnp, _NAMES.get(op, op), None)
-    if function is None:
-        raise TraceError(f"the operation {op} is not known to JAX")
-    return function(*args)
-
-
-# names in numpy of operations that have another one
-_NAMES = {"and": "logical_and", "not": "logical_not", "select": "where"}
-
-
-def _rotation(jnp: ModuleType, q: JaxArray, first: int) -> JaxArray:
-    """sin(r)/r (first = 1) or cos(r) (first = 0) with r^2 = q; neither value nor derivative of any branch overflows."""
-    near = jnp.abs(q) < SHORT_SERIES_REACH
-    total: Any = 0.0
-    for c in reversed(rotation_series(SHORT_SERIES_REACH, first)):
-        total = total * q + c
-    safe = jnp.where(near, 1.0, q)
-    r = jnp.sqrt(jnp.abs(safe))
-    grown = jnp.where(safe > 0, 0.0, r)
-    far = (
-        jnp.where(safe > 0, jnp.sin(r), jnp.sinh(grown)) / r
-        if first
-        else jnp.where(safe > 0, jnp.cos(r), jnp.cosh(grown))
-    )
-    return jnp.where(near, total, far)
+    return applied(jnp, x.op, args)
 
 
 def _iterated(jnp: ModuleType, x: Expr, values: Mapping[int, JaxArray], differentiable: bool) -> list[JaxArray]:

@@ -131,7 +131,7 @@ def test_margins_repeat_the_other_side() -> None:
     plane[layout.targets] = plane[layout.sources]
     for i in range(-2, 5):
         for j in range(-1, 5):
-            at = layout.rows[0] + layout.distance((i, j))
+            at = layout.begin + layout.distance((i, j))
             assert plane[at] == values[i % 3, j % 4]
 
 

@@ -10,6 +10,7 @@ import pytest
 
 import liehom as lh
 from liehom.flow.engines import jax_kernel, llvm_engine
+from liehom.flow.engines.plan import call_of
 from liehom.flow.engines.traced_step import traced_step
 from liehom.flow.tracing.array import Traced, contracted
 from liehom.flow.tracing.graph import LongGraphError, Table, Tape, needed
@@ -57,10 +58,23 @@ def test_loops_give_the_numbers_of_numpy(
     assert abs(solution.y - wanted.y).max() < 1e-13
 
 
+def test_calls_on_spheres_are_made_again_by_a_plan(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The check of the initial point is then as short as the point is not 0, and finite."""
+    monkeypatch.setattr(llvm_engine, "UNROLLED_OPERATIONS", 1)
+    propagator = lh.Propagator(lh.GeneratorField(lh.defining(lh.so(K)), PSIS["einsum"]), lh.Taylor(4), engine="llvm")
+    engine: Any = propagator.engine
+    first = propagator((0.0, 1.0), _points(1)[0], dt=0.1)
+    assert len(engine._plans) == 1
+    (plan,) = engine._plans.values()
+    again = plan(call_of((0.0, 1.0), _points(1)[0], {"dt": 0.1}))
+    assert np.array_equal(again.y, first.y)
+    assert all(plan(call_of((0.0, 1.0), x * _points(1)[0], {"dt": 0.1})) is None for x in (0.0, np.nan, np.inf))
+
+
 @pytest.mark.parametrize("name", ["elementary functions", "einsum"])
 def test_jax_computes_with_arrays_in_place_of_loops(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("jax")
-    monkeypatch.setattr(jax_kernel, "UNROLLED_OPERATIONS", 1)
+    monkeypatch.setitem(jax_kernel.JaxKernel.tracing, "unrolled", 1)
     field, start = lh.GeneratorField(lh.defining(lh.so(K)), PSIS[name]), _points(3)
     options: dict[str, Any] = {"step": lh.Taylor(3), "t_eval": [0.4, 1.0], "dt": 0.05}
     wanted = lh.integrate(field, (0.0, 1.0), start, **options)
