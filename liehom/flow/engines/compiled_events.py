@@ -397,6 +397,8 @@ def _of_coordinates(n: int, function: TrajectoryConstant) -> TrajectoryConstant:
 
 def events_key(functions: object) -> Hashable:
     """A key that event functions share if they are made at one place from the same values."""
+    if functions is None:
+        return None
     if isinstance(functions, list | tuple):
         return tuple(map(events_key, functions))
     marks = tuple(repr(getattr(functions, name, None)) for name in ("direction", "terminal"))

@@ -145,9 +145,10 @@ class Memory:
         self.start: Array = np.empty((kernel.graph.size, self.first.shape[1]))
         self.rows: Array = np.ones((max(1, len(kernel.lane_constants)), self.first.shape[1]))
         self.arrays: dict[str, Array] = dict.fromkeys(["stops", "out", "path"], np.zeros(0))
-        self.integers: IntegerArray = kernel.argument(self.state, start=self.start, rows=self.rows, constants=constants)
-        self.floats: Array = self.integers.view(np.float64)
-        self.address: int = self.integers.ctypes.data
+        self.points, self.top = self.state[: kernel.graph.size, :lanes].T, self.state[: kernel.graph.size]
+        argument = kernel.argument(self.state, start=self.start, rows=self.rows, constants=constants)
+        self.integers, self.floats = memoryview(argument), memoryview(argument.view(np.float64))
+        self.address: int = argument.ctypes.data
 
     def room(self, name: str, rows: int, *shape: int) -> Array:
         """The array of a name, with at least as many rows."""

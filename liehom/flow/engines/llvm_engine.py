@@ -34,7 +34,19 @@ from liehom.flow.engines.lanes import (
     with_guard,
 )
 from liehom.flow.engines.lattice import LatticeStep, lattice_step, solved_on_lattice
-from liehom.flow.engines.plan import Call, Plan, call_of, form_of, frame_key, note_ranks, ranked, serves_all_points
+from liehom.flow.engines.plan import (
+    KINDS,
+    Numbers,
+    Plan,
+    floats,
+    form_of,
+    frame_key,
+    key_of,
+    note_ranks,
+    numbers_of,
+    ranked,
+    serves_all_points,
+)
 from liehom.flow.engines.traced_step import arg_values, args_form, traced_step
 from liehom.flow.run.check import is_unbounded
 from liehom.flow.run.options import END
@@ -59,6 +71,7 @@ class LlvmEngine:
     def __init__(self, store: CodeStore | None = None, watch: Watch | None = None) -> None:
         self._store = CodeStore() if store is None else store
         self._plans: dict[Hashable, Plan] = {}
+        self._calls: dict[Hashable, tuple[Plan, Numbers]] = {}  # those that were made, by `key_of`
         self._lattice: LatticeStep | None = None
         self._watch = watch  # of the psi from which the store was made
 
@@ -68,7 +81,7 @@ class LlvmEngine:
     def solve(self, problem: Problem) -> Solution:
         """The solution of a problem."""
         if self._watch is None or self._watch.changed():
-            self._store, self._plans, self._lattice = CodeStore(), {}, None
+            self._store, self._plans, self._calls, self._lattice = CodeStore(), {}, {}, None
             self._watch = Watch(problem.bound, problem.start, problem.span[0])
         if problem.field.sites:
             step, self._lattice = self._lattice, None  # its planes serve one call at a time
@@ -93,13 +106,41 @@ class LlvmEngine:
         if not self._plans or self._watch is None:
             return None
         try:
-            call = call_of(t_span, y0, options)
-            plan = None if call is None else self._plans.get(form_of(call, self._watch.field, args))
-            if call is None or plan is None or self._watch.changed():
+            first, last = t_span  # type: ignore[misc]
+            if type(first) not in KINDS or type(last) not in KINDS:  # type: ignore[has-type]
                 return None
-            return plan(call, args)
-        except (TypeError, ValueError, OverflowError):  # not numbers, or not hashable
+            points, times = floats("the start", y0), options.get("t_eval")
+            if points is None or (times is not None and (times := floats("t_eval", times)) is None):
+                return None
+            planned = self._planned(points.shape, options, args)
+            if planned is None or self._watch.changed():
+                return None
+            return planned[0](planned[1], points, float(first), float(last), times, args)  # type: ignore[has-type]
+        except (TypeError, ValueError, OverflowError):  # not numbers
             return None
+
+    def _planned(self, shape: tuple[int, ...], options: Mapping[str, Any], args: Pytree) -> tuple[Plan, Numbers] | None:
+        """The plan for a call and its numbers, if there is one."""
+        key: Hashable = key_of(shape, options, args)
+        try:
+            return self._calls[key]
+        except KeyError:
+            pass
+        except TypeError:  # sizes in an array are not hashable
+            key = None
+        numbers = numbers_of(options, shape)
+        if numbers is None or self._watch is None:
+            return None
+        events = options.get("events")
+        form = form_of(shape, numbers, options.get("t_eval"), events, self._watch.field, args)
+        plan = self._plans.get(form)
+        if plan is None:
+            return None
+        if key is not None:
+            if len(self._calls) >= MAX_PLANS:
+                self._calls.clear()
+            self._calls[key] = plan, numbers
+        return plan, numbers
 
     def _keep_plan(self, problem: Problem, run: CompiledRun, solution: Solution) -> None:
         """Keep the plan of a call, if the trace serves all points, and nothing happens between its steps."""
@@ -110,8 +151,8 @@ class LlvmEngine:
             return
         dt = None if o.dt is None else float(np.max(o.dt)) if (o.dt == np.max(o.dt)).all() else o.dt
         start = np.asarray(problem.start)
-        call = Call(start, 0.0, 1.0, dt, o.t_eval, o.dense_output, looks=o.looks, events=o.events)
-        form = form_of(call, problem.field, problem.args)
+        numbers = Numbers(dt=dt, looks=o.looks, dense=o.dense_output)
+        form = form_of(start.shape, numbers, o.t_eval, o.events, problem.field, problem.args)
         dimension = int(np.max(problem.orbit_dimension))
         known = self._plans.get(form)
         if (known is not None and known.is_current) or not serves_all_points(problem, run.step, dimension):
@@ -121,6 +162,7 @@ class LlvmEngine:
             return
         if len(self._plans) >= MAX_PLANS:
             self._plans.pop(next(iter(self._plans)))
+        self._calls.clear()
         kernel = self._store.kernel(key, graph, int(np.prod(start.shape[:-1], dtype=int)))
         self._plans[form] = Plan(kernel, problem, run.step, run.work, run.prepared, events)
 

@@ -47,17 +47,13 @@ from liehom.flow.tracing.machine import PLACES, Kernel, padded
 
 KINDS = frozenset([float, int, np.float64, np.float32, np.int64, np.int32])
 EPS = float(np.finfo(np.float64).eps)
+FLOAT = np.dtype(np.float64)
 
 
-class Call(NamedTuple):
-    """The numbers of a call."""
+class Numbers(NamedTuple):
+    """The numbers among the options of a call."""
 
-    points: Array  # (..., N)
-    begin: float
-    end: float
     dt: float | Array | None = None  # an array of different sizes (...,)
-    times: Array | None = None
-    dense: bool = False
     rtol: float = RTOL
     atol: float = ATOL
     max_step: float = inf
@@ -65,70 +61,62 @@ class Call(NamedTuple):
     first_step: float | None = None
     max_steps: float = inf
     looks: int | None = None
-    events: Any = None
+    dense: bool = False
 
 
-ABSENT = frozenset(["dt", "t_eval", "events", "checkpoint", "first_step"])
-NUMBERS = frozenset(["rtol", "atol", "max_step", "min_step", "first_step", "max_steps"])
+ABSENT = frozenset(["dt", "first_step", "looks", "checkpoint"])
+BOUNDS = frozenset(["rtol", "atol", "max_step", "min_step", "first_step", "max_steps"])
+APART = frozenset(["t_eval", "events"])  # options that are not numbers
 
 
-def call_of(t_span: object, y0: object, options: Mapping[str, Any]) -> Call | None:
-    """The numbers of a call, None if it needs a closer look."""
-    first, last = t_span  # type: ignore[misc]
-    if type(first) not in KINDS or type(last) not in KINDS:  # type: ignore[has-type]
-        return None
-    begin, end = float(first), float(last)  # type: ignore[has-type]
-    points = _floats("the start", y0)
-    if points is None or not 0.0 < abs(end - begin) < inf:
-        return None
+def numbers_of(options: Mapping[str, Any], shape: tuple[int, ...]) -> Numbers | None:
+    """The numbers of a call from points of a shape, None if it needs a closer look."""
     numbers: dict[str, Any] = {}
     for name, value in options.items():
-        if name in NUMBERS and type(value) in KINDS:
+        if name in APART or (value is None and name in ABSENT) or (name == "progress" and value is False):
+            continue
+        if (name in BOUNDS or name == "dt") and type(value) in KINDS:
             numbers[name] = float(value)
-        elif name == "dt" and type(value) in KINDS:
-            numbers[name] = dt = float(value)
-            if not 8 * EPS * max(abs(begin), abs(end)) <= dt < inf:
-                return None
-        elif name == "dt" and value is not None:
-            numbers[name] = sizes = _sizes(value, points.shape[:-1])
-            if sizes is None or not 8 * EPS * max(abs(begin), abs(end)) <= np.min(sizes) <= np.max(sizes) < inf:
-                return None
-        elif name == "t_eval" and value is not None:
-            numbers["times"] = times = _floats("t_eval", value)
-            if times is None or times.ndim != 1 or not _are_in_order(times, begin, end):
-                return None
-        elif name == "looks" and (value is None or (type(value) is int and value >= 0)):
+        elif name == "dt":
+            numbers[name] = _sizes(value, shape[:-1])
+        elif name == "looks" and type(value) is int and value >= 0:
             numbers[name] = value
         elif name == "dense_output" and type(value) is bool:
             numbers["dense"] = value
-        elif name == "events" and value is not None:
-            numbers[name] = value
-        elif (value is not None or name not in ABSENT) and (name != "progress" or value is not False):
+        else:
             return None
-    call = Call(points, begin, end, **numbers)
-    if not NUMBERS.isdisjoint(numbers):
-        rtol, atol, most, least, first, steps = call[6:12]
-        good = rtol >= 0 and atol >= 0 and rtol + atol > 0 and 0 <= least <= most and most > 0 and steps >= 1
-        return call if good and (first is None or first > 0) else None
-    return call
+    dt, rtol, atol, most, least, first, steps = (x := Numbers(**numbers))[:7]
+    good = rtol >= 0 and atol >= 0 and rtol + atol > 0 and 0 <= least <= most and most > 0 and steps >= 1
+    good = good and (first is None or first > 0) and ("dt" not in numbers or (dt is not None and np.max(dt) < inf))
+    return x if good else None
 
 
-def _floats(what: str, given: object) -> Array | None:
+def key_of(shape: tuple[int, ...], options: Mapping[str, Any], args: Pytree) -> Hashable:
+    """A key that calls share if they differ in points, span, output times and the numbers of args alone."""
+    if args is None and APART.isdisjoint(options):
+        return (shape, *options.items(), *map(type, options.values()))
+    events, form = options.get("events"), None if args is None else args_form(args, len(shape) - 1)
+    others = {name: x for name, x in options.items() if name not in APART}
+    return key_of(shape, others, None), options.get("t_eval") is None, events_key(events), form
+
+
+def floats(what: str, given: object) -> Array | None:
     """An array of floats from an array, or from lists, of floats or integers."""
     value: Any = given
     if type(given) is list or type(given) is tuple:
-        refuse_masked(what, given)
+        if not KINDS.issuperset(map(type, given)):
+            refuse_masked(what, given)
         value = np.array(given)
     elif type(given) is not np.ndarray:
         return None
-    if value.dtype == np.float64:
+    if value.dtype is FLOAT or value.dtype == FLOAT:
         return value
     return value.astype(np.float64) if value.dtype.kind in "iu" else None
 
 
 def _sizes(value: object, shape: tuple[int, ...]) -> float | Array | None:
     """The step sizes of trajectories, or one size if they agree."""
-    sizes = _floats("dt", value)
+    sizes = floats("dt", value)
     if sizes is None or not sizes.size or sizes.shape not in ((), shape):
         return None
     largest = float(sizes.max())
@@ -148,13 +136,15 @@ def _are_in_order(times: Array, begin: float, end: float) -> bool:
     return bool((steps > 0).all() if end > begin else (steps < 0).all())
 
 
-def form_of(call: Call, field: GeneratorField, args: Pytree) -> Hashable:
+def form_of(
+    shape: tuple[int, ...], numbers: Numbers, t_eval: object, events: object, field: GeneratorField, args: Pytree
+) -> Hashable:  # fmt: skip
     """The form of a call: calls of one form have one plan."""
-    gap = None if call.dt is not None else gap_of(call.looks, 1.0, field)
-    form = None if args is None else args_form(args, call.points.ndim - 1)
-    kind = 0 if call.dt is None else 1 if type(call.dt) is float else 2
-    events = None if call.events is None else events_key(call.events)
-    return call.points.shape, kind, call.times is None, call.dense, gap if gap in (None, inf) else 1.0, form, events
+    gap = None if numbers.dt is not None else gap_of(numbers.looks, 1.0, field)
+    form = None if args is None else args_form(args, len(shape) - 1)
+    kind = 0 if numbers.dt is None else 1 if type(numbers.dt) is float else 2
+    looks = gap if gap in (None, inf) else 1.0
+    return shape, kind, t_eval is None, numbers.dense, looks, form, events_key(events)
 
 
 def serves_all_points(problem: Problem, step: Step, dimension: int) -> bool:
@@ -212,6 +202,11 @@ ROOM = 64  # rows of the path, at first, of steps whose number is not known
 LAST_STOP, FIRST_STOP, ORIGIN, END_STEP, TOTAL, STEP_SIZE = (
     PLACES[name] for name in ("last_stop", "first_stop", "origin", "end", "total", "step_size")
 )
+OF_A_CALL = {
+    name: i
+    for i, name in enumerate(["checks", "direction", "rest", "end", "rtol", "atol", "max_step", "tiny", "gap", "latest"])
+}
+"""Places of the numbers of a call among those that a kernel may take, besides args."""
 TROUBLE = frozenset(["unkept", "failed", "near", "short", "conservation_short", "conservation_missed"])
 """Numbers of steps that are 0, or -inf, if the steps are as they should be."""
 
@@ -227,9 +222,11 @@ class Piece(NamedTuple):
 class Task(NamedTuple):
     """The order that a call gives to a kernel."""
 
-    call: Call
+    numbers: Numbers
     points: Array  # (L, N)
-    values: Mapping[str, Any]  # the constants of the run, by name
+    times: Array | None
+    span: tuple[float, float]
+    values: Mapping[str, Any]  # the numbers in args, by name
     direction: float
     total: int  # number of steps in lockstep
     starts: int  # number of output times at the begin
@@ -256,90 +253,110 @@ class Plan:
         self.kept = [x for x in kernel.names if small or x in recorded or x in ("count", "tries")]
         self.kept_rows: Any = slice(None) if small else [self.place[name] for name in self.kept]
         self.count = self.kept.index("count")
-        self.ranked = ranked(self.lanes) if step.uses_isotropy else np.zeros(0, dtype=int)
-        self.given = [(name, i) for name, i in self.place.items() if name in ("t", "stop", "kept", "h")]
+        self.ranked = ranked(self.lanes) if step.uses_isotropy else None
         self.constants: Array = np.zeros(max(1, len(kernel.run_constants)))
+        self.slots = memoryview(self.constants)
+        self.slot = {name: i for i, name in enumerate(kernel.run_constants)}
+        self.own = [(i, OF_A_CALL[name]) for name, i in self.slot.items() if name in OF_A_CALL]
         self.memory = Memory(kernel, self.lanes, self.constants) if small else None
         self.is_judged, self.rows, self.lock = problem.options.dt is not None, ROOM, threading.Lock()
+        # rows of a path up to which the lanes are not run in pieces
+        row_bytes, row_work = 8 * (self.n + 2) * self.lanes, work * self.lanes
+        most = min(LANE_STEPS_FOR_THREADS // self.lanes, OPERATIONS_PER_CALL // row_work, PATH_BYTES_PER_CALL // row_bytes)
+        self.short = most if small else 0
 
     @property
     def is_current(self) -> bool:
         """Whether the event functions are those that were compiled."""
         return self.events is None or not self.events.parts.changed()
 
-    def __call__(self, call: Call, args: Pytree = None) -> Solution | None:
+    def __call__(
+        self, numbers: Numbers, points: Array, begin: float, end: float, times: Array | None, args: Pytree
+    ) -> Solution | None:  # fmt: skip
         """The solution, or None if the call needs a closer look."""
-        if not self.lock.acquire(blocking=False):
+        length, rest, dt, total = abs(end - begin), 8 * EPS * max(abs(begin), abs(end)), numbers.dt, 0
+        if not 0.0 < length < inf or not (dt is None or rest <= (dt if type(dt) is float else np.min(dt))):
+            return None
+        if self.lockstep:
+            total = max(ceil(length / dt - (SLACK + rest / dt)), 1)  # type: ignore[operator,arg-type]
+            if total >= numbers.max_steps:
+                return None
+        if times is not None and not _are_in_order(times, begin, end):
+            return None
+        if not self.is_current or not self.lock.acquire(blocking=False):
             return None
         try:
-            return self._solution(call, args)
+            values = self._take(numbers, begin, end, rest, args)
+            keeps = times is None or numbers.dense or self.events is not None
+            starts = int(times is not None and float(times[0]) == begin)
+            y = None if times is None else np.empty((self.lanes, self.n, len(times)))
+            if len(self.shape) != 1:
+                points = points.reshape(self.lanes, self.n)
+            direction = 1.0 if end > begin else -1.0
+            return self._solution(
+                Task(numbers, points, times, (begin, end), values, direction, total, starts, keeps, y), args
+            )
         finally:
             self.lock.release()
 
-    def _solution(self, call: Call, args: Pytree) -> Solution | None:
-        times, begin, end = call.times, call.begin, call.end
-        points, direction = call.points.reshape(self.lanes, self.n), 1.0 if end > begin else -1.0
-        rest, total = 8 * EPS * max(abs(begin), abs(end)), 0
-        if self.lockstep:
-            dt: Any = call.dt
-            total = max(ceil(abs(end - begin) / dt - (SLACK + rest / dt)), 1)
-            if total >= call.max_steps:
-                return None
-        if not self.is_current:
-            return None
-        keeps = times is None or call.dense or self.events is not None
-        starts = int(times is not None and float(times[0]) == begin)
-        chunk = self._chunk(total if self.lockstep or not keeps else self.rows, keeps=keeps)
-        if chunk < 1:
-            return None
-        y = None if times is None else np.empty((self.lanes, self.n, len(times)))
+    def _solution(self, task: Task, args: Pytree) -> Solution | None:
+        _, points, times, span, values, _, total, starts, keeps, y = task
         if y is not None and starts:
             y[:, :, 0] = points
-        task = Task(call, points, self._take(call, args, direction, rest), direction, total, starts, keeps, y)
-        if chunk >= self.lanes:
-            pieces = [self._made(task, slice(0, self.lanes))]
-        else:
+        rows = total if self.lockstep or not keeps else self.rows
+        if rows <= self.short:
+            piece = self._made(task, slice(0, self.lanes))
+            pieces = [] if piece is None else [piece]
+        elif chunk := self._chunk(rows, keeps=keeps):
             cuts = pairwise([*range(0, self.lanes, chunk), self.lanes])
-            pieces = in_threads(lambda lanes: self._made(task, lanes), [slice(a, b) for a, b in cuts])
-        good = [piece for piece in pieces if piece is not None]
-        if len(good) < len(pieces):
+            made = in_threads(lambda lanes: self._made(task, lanes), [slice(a, b) for a, b in cuts])
+            pieces = [piece for piece in made if piece is not None] if None not in made else []
+        else:
+            pieces = []
+        if not pieces:
             return None
-        numbers = good[0].numbers if len(good) == 1 else np.concatenate([x.numbers for x in good], axis=1)
-        if not self.is_judged and numbers[self.count].max() >= MIN_STEPS:
+        numbers = pieces[0].numbers if len(pieces) == 1 else np.concatenate([x.numbers for x in pieces], axis=1)
+        if not self.is_judged and (numbers.item(self.count) if self.lanes == 1 else numbers[self.count].max()) >= MIN_STEPS:
             self.is_judged = True  # an ordinary call says whether the field is stiff
             return None
-        path, log = _joined(good, points, begin) if keeps else None, None
+        path, log = _joined(pieces, points, span[0]) if keeps else None, None
         if self.events is not None and path is not None:
-            log = self.events(path, task.values, (begin, end))
+            log = self.events(path, {**values, "direction": task.direction}, span)
             if log is None:
                 return None
-        t: Any = times
-        result: Any = y
-        if path is not None and y is None:
-            t, result, _ = path
-        t = t.copy() if times is not None else t[0] if not self.shape else t.reshape(*self.shape, t.shape[-1])
-        result = result[0] if not self.shape else result.reshape(*self.shape, self.n, result.shape[-1])
+        if y is not None:
+            t, y = times.copy(), y  # type: ignore[union-attr]
+        else:
+            t, y = path[0], path[1]  # type: ignore[index]
+        if not self.shape:
+            t, y = t if times is not None else t[0], y[0]
+        elif len(self.shape) > 1:
+            t, y = t if times is not None else t.reshape(*self.shape, -1), y.reshape(*self.shape, *y.shape[1:])
         # what the other entries need is copied: points may change
-        first = points[self.ranked] if len(self.ranked) else points[:0]
-        start = np.array(points) if keeps and y is not None else None
-        return solution_of(t, result, END, lambda: self._others(call, args, numbers, path, (first, start), log))
+        kept = points.copy() if self.ranked is not None or (keeps and times is not None) else None
+        return solution_of(t, y, END, lambda: self._others(task, args, numbers, path, kept, log))
 
     def _made(self, task: Task, lanes: slice) -> Piece | None:
         """Run the kernel for some lanes; None if one of them fails."""
-        points, y = task.points[lanes], task.y
-        count, memory = len(points), self.memory
-        if memory is None or count < self.lanes:  # pieces run in threads
+        points, y, memory = task.points, task.y, self.memory
+        if lanes.stop - lanes.start < self.lanes:
+            points, memory = points[lanes], None
+        count = len(points)
+        if memory is None:  # pieces run in threads
             memory = Memory(self.kernel, count, self.constants)
         for row, number in zip(memory.rows, self.kernel.lane_constants, strict=False):
             row[:count] = task.values[number.name][lanes] if isinstance(number, LaneConstant) else number(points)
         parts = self._run(memory, task, points, lanes)
         state = memory.state
-        if parts is None or any((state[i, 0] if count == 1 else state[i, :count].max()) > 0 for i in self.trouble):
+        if parts is None:
             return None
+        for i in self.trouble:
+            if (state.item(i) if self.lanes == 1 else state[i, :count].max()) > 0:
+                return None
         if y is not None and y.shape[2] > task.starts:
             out = memory.arrays["out"]
             y[lanes, :, task.starts :] = out[task.starts : y.shape[2], :, :count].transpose(2, 1, 0)
-        numbers = state[:, :count].copy() if self.memory is not None else state[self.kept_rows, :count]
+        numbers = state.copy() if memory is self.memory else state[self.kept_rows, :count]
         return Piece(lanes, self._path(parts, count) if task.keeps else None, numbers)
 
     def _chunk(self, rows: int, *, keeps: bool) -> int:
@@ -352,73 +369,84 @@ class Plan:
             most = min(most, PATH_BYTES_PER_CALL // (8 * (self.n + 2) * rows))
         return padded(most, width) if most >= min(width, self.lanes) else 0
 
-    def _take(self, call: Call, args: Pytree, direction: float, rest: float) -> Mapping[str, Any]:
-        """Take over the numbers of a call as constants of the run; returns them by name."""
-        names = self.kernel.run_constants
-        values: dict[str, Any] = {"checks": 1.0, "direction": direction, "rest": rest}
-        if len(names) > 1:
-            values |= {"end": call.end, "rtol": call.rtol, "atol": call.atol, "max_step": call.max_step}
-            values["tiny"] = max(rest, call.min_step if call.dt is None else 0.0)
-            values["gap"] = gap_of(call.looks, call.end - call.begin, self.problem.field)
-            values["latest"] = bounds_of((call.begin, call.end))[1]
-        if args is not None:
-            check_numbers(args, self.shape)
-            values |= arg_values(args, len(self.shape))
-        self.constants[: len(names)] = [values.get(name, 0.0) for name in names]
+    def _take(self, numbers: Numbers, begin: float, end: float, rest: float, args: Pytree) -> Mapping[str, Any]:
+        """Take over the numbers of a call as constants of the run; returns those of args by name."""
+        dt, rtol, atol, most, least, _, _, looks, _ = numbers
+        tiny = rest if dt is not None or rest > least else least
+        gap = (gap_of(looks, end - begin, self.problem.field) if "gap" in self.slot else None) or 0.0
+        direction, latest = bounds_of((begin, end))
+        known = 1.0, direction, rest, end, rtol, atol, most, tiny, gap, latest
+        slots = self.slots
+        for place, i in self.own:
+            slots[place] = known[i]
+        if args is None:
+            return {}
+        check_numbers(args, self.shape)
+        values = arg_values(args, len(self.shape))
+        for name in values.keys() & self.slot.keys():
+            slots[self.slot[name]] = values[name]
         return values
 
     def _run(self, memory: Memory, task: Task, points: Array, lanes: slice) -> list[Array] | None:
         """Run the kernel for some points from begin to end; the parts of the path, None if a lane fails."""
-        call, n, count, state = task.call, self.n, len(points), memory.state
-        integers, floats, width = memory.integers, memory.floats, state.shape[1]
+        numbers, _, times, (begin, end), _, direction, total, starts, keeps, _ = task
+        n, count, state, integers, floats = self.n, len(points), memory.state, memory.integers, memory.floats
+        width = state.shape[1]
         state[:] = memory.first
-        state[:n, :count] = points.T
-        times: Any = call.times
-        last = 0 if times is None else len(times) - int(times[-1] == call.end)
-        stops = memory.room("stops", last + 2)
-        if last:
-            stops[:last] = times[:last]
-        stops[last : last + 2] = call.end
-        memory.room("out", last + 2, n, width)
-        integers[LAST_STOP], integers[FIRST_STOP], floats[ORIGIN] = last, task.starts, call.begin
-        size: Any = call.dt
+        memory.points[:] = points
+        if times is not None:
+            last = len(times) - int(times[-1] == end)
+            stops = memory.room("stops", last + 2)
+            stops[:last], stops[last : last + 2] = times[:last], end
+            memory.room("out", last + 2, n, width)
+            integers[LAST_STOP], integers[FIRST_STOP] = last, starts
+        else:
+            memory.room("stops", 2)[:2] = end
+            memory.room("out", 2, n, width)
+            integers[LAST_STOP] = integers[FIRST_STOP] = 0
+        floats[ORIGIN] = begin
+        size: Any = numbers.dt
         if size is None:
-            size = call.first_step or call.min_step or inf
+            size = numbers.first_step or numbers.min_step or inf
         else:
-            size = task.direction * (size if type(size) is float else size.reshape(-1)[lanes])
+            size = direction * (size if type(size) is float else size.reshape(-1)[lanes])
         if self.lockstep:
-            state[self.place["count"]] = task.total
-            integers[END_STEP], integers[TOTAL], floats[STEP_SIZE] = task.total, task.total, size
+            state[self.place["count"]] = total
+            integers[END_STEP], integers[TOTAL], floats[STEP_SIZE] = total, total, size
         else:
-            given = {"t": call.begin, "stop": task.starts, "kept": task.starts, "h": size}
-            for name, i in self.given:
-                state[i, :count] = given[name]
+            state[self.place["t"], :count], state[self.place["h"], :count] = begin, size
+            if starts:
+                for name in {"stop", "kept"} & self.place.keys():
+                    state[self.place[name], :count] = starts
         if count < width:
             state[:, count:] = state[:, :1]
-        memory.start[:] = state[:n]
+        memory.start[:] = memory.top
         if not self.lockstep:
-            return self._to_the_end(memory, count, call.max_steps, keeps=task.keeps)
-        parts = [memory.room("path", task.total, n + 2, width)[: task.total]] if task.keeps else []
+            return self._to_the_end(memory, count, numbers.max_steps, keeps=keeps)
+        parts = [memory.room("path", total, n + 2, width)[:total]] if keeps else []
         self.kernel.run(memory.address)
         alive = state[self.place["alive"]]
         return parts if (alive[0] if count == 1 else alive[:count].min()) > 0 else None
 
     def _to_the_end(self, memory: Memory, count: int, most: float, *, keeps: bool) -> list[Array] | None:
-        """Run the kernel until all lanes are at the end, by steps of their own sizes."""
-        parts, width, row, state = list[Array](), memory.state.shape[1], self.n + 1, memory.state
-        alive, taken = state[self.place["alive"], :count], state[self.place["count"], :count]
+        """Run the kernel until all lanes are at the end, by steps of their own sizes; the parts of the path."""
+        parts, width, size, state = list[Array](), memory.state.shape[1], self.n + 1, memory.state
+        alive, taken = self.place["alive"], self.place["count"]
         memory.integers[END_STEP] = max(1, OPERATIONS_PER_CALL // (self.work * count))
         while True:
             if keeps:
-                path = memory.room("path", self.rows, row + 1, width)
+                path = memory.room("path", self.rows, size + 1, width)
                 memory.integers[END_STEP] = len(path)
-                path[:, row] = 0.0
+                path[:, size] = 0.0
             self.kernel.run(memory.address)
             if keeps:
-                moved = np.flatnonzero(path[:, row, :count].any(axis=-1))
-                parts.append(path[: int(moved[-1]) + 1 if len(moved) else 0])
-            least, most_left = (alive[0], alive[0]) if count == 1 else (np.abs(alive).min(), alive.max())
-            if least == 0 or (taken[0] if count == 1 else taken.max()) >= most:
+                parts.append(path[path[:, size, :count].any(axis=-1)] if count > 1 else path[path[:, size, 0] != 0])
+            if count == 1:
+                least, most_left, most_taken = abs(left := state.item(alive * width)), left, state.item(taken * width)
+            else:
+                lanes = state[alive, :count]
+                least, most_left, most_taken = np.abs(lanes).min(), lanes.max(), state[taken, :count].max()
+            if least == 0 or most_taken >= most:
                 return None
             if most_left < 0:
                 return parts
@@ -428,36 +456,34 @@ class Plan:
     def _path(self, parts: list[Array], count: int) -> Array:
         """The path of some lanes, without gaps, from its parts."""
         path = (parts[0] if len(parts) == 1 else np.concatenate(parts))[..., :count]
-        if self.lockstep or (count == 1 and path[:, self.n + 1].all()):
+        if self.lockstep or count == 1:
             return path
         moved = path[:, self.n + 1] != 0
         if not moved.all():
             order = np.argsort(~moved, axis=0, kind="stable")[: int(moved.sum(axis=0).max(initial=0))]
             path, moved = (np.take_along_axis(x, i, axis=0) for x, i in ((path, order[:, None]), (moved, order)))
             path = np.where(moved[:, None], path, np.nan)
-        # memory that is used again is copied when the parts are joined
         return path
 
     def _others(
-        self, call: Call, args: Pytree, numbers: Array, path: tuple[Array, Array, Array] | None,
-        starts: tuple[Array, Array | None], log: EventLog | None,
+        self, task: Task, args: Pytree, numbers: Array, path: tuple[Array, Array, Array] | None, start: Array | None,
+        log: EventLog | None,
     ) -> dict[str, object]:  # fmt: skip
         """The other entries of a solution, which are made when one of them is asked for."""
-        p, shape, graph, (points, start) = self.problem, self.shape, self.kernel.graph, starts
+        p, shape, graph, given = self.problem, self.shape, self.kernel.graph, task.numbers
         bound = p.field if args is None else p.field.with_args(args)
-        p = replace(p, bound=bound, span=(np.float64(call.begin), np.float64(call.end)))
-        row = dict(zip(self.kept, numbers, strict=True))
+        p = replace(p, bound=bound, span=(np.float64(task.span[0]), np.float64(task.span[1])))
+        row = {name: x[: self.lanes] for name, x in zip(self.kept, numbers, strict=True)}
         statistics = StepStatistics(self.step, shape)
-        if len(points):
-            note_ranks(statistics, p, self.step, points, self.ranked, shape)
-        statistics.add_compiled(np.arange(self.lanes), records_of(self.kernel, row), (call.begin, call.end))
+        if self.ranked is not None and start is not None:
+            note_ranks(statistics, p, self.step, start[self.ranked], self.ranked, shape)
+        statistics.add_compiled(np.arange(self.lanes), records_of(self.kernel, row), task.span)
         calls = calls_of(self.kernel, row, row.get("tries", row["count"]))
-        calls = calls + int(graph.first is not None and call.dt is None and not (call.first_step or call.min_step))
+        calls = calls + int(graph.first is not None and given.dt is None and not (given.first_step or given.min_step))
         steps = row["count"].astype(int)
-        check = replace(p.options, looks=call.looks).check(p.field.time_dependent)
-        direction = 1.0 if call.end > call.begin else -1.0
+        check = replace(p.options, looks=given.looks).check(p.field.time_dependent)
         report = statistics.report(
-            p.action, p.options.clock, p.orbit_dimension, direction, check=check, engine=self.kernel.engine
+            p.action, p.options.clock, p.orbit_dimension, task.direction, check=check, engine=self.kernel.engine
         )
 
         def dense() -> DenseSolution:
@@ -472,11 +498,11 @@ class Plan:
 
         t_events, y_events = (None, None) if log is None else log.lists()
         return {
-            "sol": dense() if call.dense else None, "t_events": t_events, "y_events": y_events,
+            "sol": dense() if given.dense else None, "t_events": t_events, "y_events": y_events,
             "nfev": self.prepared + int(calls.max()), "message": MESSAGES[END],
             "n_steps": steps.reshape(shape) if shape else int(steps[0]), "report": report,
             "statuses": np.full(shape, END) if shape else END, "njev": 0, "nlu": 0,
-            "_steps": dense if call.times is None or call.dense else None,
+            "_steps": dense if task.times is None or given.dense else None,
         }  # fmt: skip
 
 
@@ -484,12 +510,11 @@ def _joined(pieces: Sequence[Piece], points: Array, begin: float) -> tuple[Array
     """Times (L, j + 1), points (L, N, j + 1) and sizes (L, j) of the paths of all lanes, filled up with NaN."""
     (lanes, n), paths = points.shape, [(x.lanes, x.path) for x in pieces if x.path is not None]
     rows = len(paths[0][1]) if len(paths) == 1 else max(len(path) for _, path in paths)
-    t, y, sizes = np.empty((lanes, rows + 1)), np.empty((lanes, n, rows + 1)), np.empty((lanes, rows))
-    t[:, 0], y[:, :, 0] = begin, points
+    whole = np.empty((lanes, n + 2, rows + 1))
+    whole[:, :n, 0], whole[:, n, 0] = points, begin
     for here, path in paths:
         count = len(path)
-        t[here, 1 : count + 1], y[here, :, 1 : count + 1] = path[:, n].T, path[:, :n].transpose(2, 1, 0)
-        sizes[here, :count] = path[:, n + 1].T
+        whole[here, :, 1 : count + 1] = path.transpose(2, 1, 0)
         if count < rows:
-            t[here, count + 1 :], y[here, :, count + 1 :], sizes[here, count:] = np.nan, np.nan, np.nan
-    return t, y, sizes
+            whole[here, :, count + 1 :] = np.nan
+    return whole[:, n], whole[:, :n], whole[:, n + 1, 1:]
