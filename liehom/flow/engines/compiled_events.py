@@ -379,7 +379,7 @@ class PointCode:
             self.memory.room("stops", 2)[:] = 1.0
             self.memory.room("out", 1, *self.memory.state.shape)
         state, memory = self.memory.state, self.memory
-        state[:] = memory.first
+        memory.block[:] = memory.first
         state[: len(given), :lanes] = given
         state[: len(given), lanes:] = state[: len(given), :1]
         if start is not None:
@@ -397,8 +397,6 @@ def _of_coordinates(n: int, function: TrajectoryConstant) -> TrajectoryConstant:
 
 def events_key(functions: object) -> Hashable:
     """A key that event functions share if they are made at one place from the same values."""
-    if functions is None:
-        return None
     if isinstance(functions, list | tuple):
         return tuple(map(events_key, functions))
     marks = tuple(repr(getattr(functions, name, None)) for name in ("direction", "terminal"))
@@ -486,11 +484,10 @@ class PlannedEvents:
             np.allclose(made[: self.events.count], wanted, rtol=RTOL, atol=RTOL * np.abs(wanted).max(initial=0))
         )
 
-    def __call__(
-        self, path: tuple[Array, Array, Array], values: Mapping[str, Any], span: tuple[float, float]
-    ) -> EventLog | None:
-        """The events on paths: times (L, j + 1), points (L, N, j + 1) and sizes (L, j). None if one may end a run."""
-        (t, y, sizes), events, n = path, self.events, self.n
+    def __call__(self, path: Array, values: Mapping[str, Any], span: tuple[float, float]) -> EventLog | None:
+        """The events on paths (j + 1, N + 2, L) of points, times and sizes. None if one may end a run."""
+        events, n = self.events, self.n
+        t, y, sizes = path[:, n].T, path[:, :n].transpose(2, 1, 0), path[1:, n + 1].T
         lanes, k = t.shape
         values = {**values, "length": abs(span[1] - span[0])}
         made = self.at_points([*y.transpose(1, 0, 2).reshape(n, -1), t.reshape(-1)], values)

@@ -41,11 +41,12 @@ from liehom.flow.engines.plan import (
     floats,
     form_of,
     frame_key,
-    key_of,
+    known_numbers,
     note_ranks,
     numbers_of,
     ranked,
     serves_all_points,
+    with_form,
 )
 from liehom.flow.engines.traced_step import arg_values, args_form, traced_step
 from liehom.flow.run.check import is_unbounded
@@ -71,7 +72,6 @@ class LlvmEngine:
     def __init__(self, store: CodeStore | None = None, watch: Watch | None = None) -> None:
         self._store = CodeStore() if store is None else store
         self._plans: dict[Hashable, Plan] = {}
-        self._calls: dict[Hashable, tuple[Plan, Numbers]] = {}  # those that were made, by `key_of`
         self._lattice: LatticeStep | None = None
         self._watch = watch  # of the psi from which the store was made
 
@@ -81,7 +81,7 @@ class LlvmEngine:
     def solve(self, problem: Problem) -> Solution:
         """The solution of a problem."""
         if self._watch is None or self._watch.changed():
-            self._store, self._plans, self._calls, self._lattice = CodeStore(), {}, {}, None
+            self._store, self._plans, self._lattice = CodeStore(), {}, None
             self._watch = Watch(problem.bound, problem.start, problem.span[0])
         if problem.field.sites:
             step, self._lattice = self._lattice, None  # its planes serve one call at a time
@@ -112,35 +112,20 @@ class LlvmEngine:
             points, times = floats("the start", y0), options.get("t_eval")
             if points is None or (times is not None and (times := floats("t_eval", times)) is None):
                 return None
-            planned = self._planned(points.shape, options, args)
-            if planned is None or self._watch.changed():
+            others, events = options, None
+            if times is not None or "events" in options or "t_eval" in options:
+                others = {name: x for name, x in options.items() if name not in ("t_eval", "events")}
+                events = options.get("events")
+            try:
+                numbers = known_numbers(**others)
+            except TypeError:  # sizes in an array are not hashable
+                numbers = numbers_of(**others)
+            plan = None if numbers is None else self._plans.get(form_of(points.shape, numbers, times, events, args))
+            if numbers is None or plan is None or self._watch.changed():
                 return None
-            return planned[0](planned[1], points, float(first), float(last), times, args)  # type: ignore[has-type]
+            return plan(numbers, points, float(first), float(last), times, args)  # type: ignore[has-type]
         except (TypeError, ValueError, OverflowError):  # not numbers
             return None
-
-    def _planned(self, shape: tuple[int, ...], options: Mapping[str, Any], args: Pytree) -> tuple[Plan, Numbers] | None:
-        """The plan for a call and its numbers, if there is one."""
-        key: Hashable = key_of(shape, options, args)
-        try:
-            return self._calls[key]
-        except KeyError:
-            pass
-        except TypeError:  # sizes in an array are not hashable
-            key = None
-        numbers = numbers_of(options, shape)
-        if numbers is None or self._watch is None:
-            return None
-        events = options.get("events")
-        form = form_of(shape, numbers, options.get("t_eval"), events, self._watch.field, args)
-        plan = self._plans.get(form)
-        if plan is None:
-            return None
-        if key is not None:
-            if len(self._calls) >= MAX_PLANS:
-                self._calls.clear()
-            self._calls[key] = plan, numbers
-        return plan, numbers
 
     def _keep_plan(self, problem: Problem, run: CompiledRun, solution: Solution) -> None:
         """Keep the plan of a call, if the trace serves all points, and nothing happens between its steps."""
@@ -151,8 +136,10 @@ class LlvmEngine:
             return
         dt = None if o.dt is None else float(np.max(o.dt)) if (o.dt == np.max(o.dt)).all() else o.dt
         start = np.asarray(problem.start)
-        numbers = Numbers(dt=dt, looks=o.looks, dense=o.dense_output)
-        form = form_of(start.shape, numbers, o.t_eval, o.events, problem.field, problem.args)
+        numbers = with_form(Numbers(dt=dt, looks=o.looks, dense=o.dense_output))
+        if numbers is None:
+            return
+        form = form_of(start.shape, numbers, o.t_eval, o.events, problem.args)
         dimension = int(np.max(problem.orbit_dimension))
         known = self._plans.get(form)
         if (known is not None and known.is_current) or not serves_all_points(problem, run.step, dimension):
@@ -162,7 +149,6 @@ class LlvmEngine:
             return
         if len(self._plans) >= MAX_PLANS:
             self._plans.pop(next(iter(self._plans)))
-        self._calls.clear()
         kernel = self._store.kernel(key, graph, int(np.prod(start.shape[:-1], dtype=int)))
         self._plans[form] = Plan(kernel, problem, run.step, run.work, run.prepared, events)
 

@@ -6,9 +6,10 @@ import contextlib
 import threading
 from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import replace
+from functools import lru_cache
 from itertools import pairwise
 from math import ceil, inf
-from typing import Any, NamedTuple, final
+from typing import Any, NamedTuple, TypeAlias, final
 
 import numpy as np
 
@@ -16,7 +17,7 @@ from liehom.base.errors import ConvergenceError, LiehomError
 from liehom.base.objects import refuse_masked
 from liehom.base.pytrees import check_numbers
 from liehom.base.typing import Array, IntegerArray, Pytree
-from liehom.flow.action.field import GeneratorField, check_point
+from liehom.flow.action.field import check_point
 from liehom.flow.action.space import Action
 from liehom.flow.engines.arguments import with_tight_frame
 from liehom.flow.engines.compiled_events import PlannedEvents, events_key
@@ -62,42 +63,46 @@ class Numbers(NamedTuple):
     max_steps: float = inf
     looks: int | None = None
     dense: bool = False
+    shape: tuple[int, ...] = ()  # of dt
+    form: Hashable = None  # which calls of a form have in common
 
 
+BOUNDS = frozenset(["dt", "rtol", "atol", "max_step", "min_step", "first_step", "max_steps"])
 ABSENT = frozenset(["dt", "first_step", "looks", "checkpoint"])
-BOUNDS = frozenset(["rtol", "atol", "max_step", "min_step", "first_step", "max_steps"])
-APART = frozenset(["t_eval", "events"])  # options that are not numbers
 
 
-def numbers_of(options: Mapping[str, Any], shape: tuple[int, ...]) -> Numbers | None:
-    """The numbers of a call from points of a shape, None if it needs a closer look."""
+def numbers_of(**options: object) -> Numbers | None:
+    """The numbers of a call, None if it needs a closer look."""
     numbers: dict[str, Any] = {}
     for name, value in options.items():
-        if name in APART or (value is None and name in ABSENT) or (name == "progress" and value is False):
-            continue
-        if (name in BOUNDS or name == "dt") and type(value) in KINDS:
+        if name in BOUNDS and type(value) in KINDS:
             numbers[name] = float(value)
-        elif name == "dt":
-            numbers[name] = _sizes(value, shape[:-1])
+        elif name == "dt" and value is not None:
+            numbers[name] = sizes = floats("dt", value)
+            if sizes is None or not sizes.size:
+                return None
+            numbers[name] = float(sizes.flat[0]) if bool((sizes == sizes.flat[0]).all()) else sizes
+            numbers["shape"] = sizes.shape
         elif name == "looks" and type(value) is int and value >= 0:
             numbers[name] = value
         elif name == "dense_output" and type(value) is bool:
             numbers["dense"] = value
-        else:
+        elif (value is not None or name not in ABSENT) and (name != "progress" or value is not False):
             return None
-    dt, rtol, atol, most, least, first, steps = (x := Numbers(**numbers))[:7]
+    return with_form(Numbers(**numbers))
+
+
+known_numbers = lru_cache(maxsize=256, typed=True)(numbers_of)
+
+
+def with_form(x: Numbers) -> Numbers | None:
+    """Numbers with what is the same in all calls of a form, None if they are not right."""
+    dt, rtol, atol, most, least, first, steps, looks, *_ = x
     good = rtol >= 0 and atol >= 0 and rtol + atol > 0 and 0 <= least <= most and most > 0 and steps >= 1
-    good = good and (first is None or first > 0) and ("dt" not in numbers or (dt is not None and np.max(dt) < inf))
-    return x if good else None
-
-
-def key_of(shape: tuple[int, ...], options: Mapping[str, Any], args: Pytree) -> Hashable:
-    """A key that calls share if they differ in points, span, output times and the numbers of args alone."""
-    if args is None and APART.isdisjoint(options):
-        return (shape, *options.items(), *map(type, options.values()))
-    events, form = options.get("events"), None if args is None else args_form(args, len(shape) - 1)
-    others = {name: x for name, x in options.items() if name not in APART}
-    return key_of(shape, others, None), options.get("t_eval") is None, events_key(events), form
+    if not good or (first is not None and first <= 0) or (dt is not None and not 0 < np.min(dt) <= np.max(dt) < inf):
+        return None
+    kind: Hashable = type(dt) if dt is not None else looks and 1
+    return x._replace(form=(kind, x.dense))
 
 
 def floats(what: str, given: object) -> Array | None:
@@ -114,15 +119,6 @@ def floats(what: str, given: object) -> Array | None:
     return value.astype(np.float64) if value.dtype.kind in "iu" else None
 
 
-def _sizes(value: object, shape: tuple[int, ...]) -> float | Array | None:
-    """The step sizes of trajectories, or one size if they agree."""
-    sizes = floats("dt", value)
-    if sizes is None or not sizes.size or sizes.shape not in ((), shape):
-        return None
-    largest = float(sizes.max())
-    return largest if float(sizes.min()) == largest else sizes
-
-
 def _are_in_order(times: Array, begin: float, end: float) -> bool:
     """Whether times are increasing, or decreasing, from the begin of a span to its end."""
     if not len(times):
@@ -136,15 +132,10 @@ def _are_in_order(times: Array, begin: float, end: float) -> bool:
     return bool((steps > 0).all() if end > begin else (steps < 0).all())
 
 
-def form_of(
-    shape: tuple[int, ...], numbers: Numbers, t_eval: object, events: object, field: GeneratorField, args: Pytree
-) -> Hashable:  # fmt: skip
+def form_of(shape: tuple[int, ...], numbers: Numbers, t_eval: object, events: object, args: Pytree) -> Hashable:
     """The form of a call: calls of one form have one plan."""
-    gap = None if numbers.dt is not None else gap_of(numbers.looks, 1.0, field)
     form = None if args is None else args_form(args, len(shape) - 1)
-    kind = 0 if numbers.dt is None else 1 if type(numbers.dt) is float else 2
-    looks = gap if gap in (None, inf) else 1.0
-    return shape, kind, t_eval is None, numbers.dense, looks, form, events_key(events)
+    return shape, numbers.form, t_eval is None, form, None if events is None else events_key(events)
 
 
 def serves_all_points(problem: Problem, step: Step, dimension: int) -> bool:
@@ -202,21 +193,14 @@ ROOM = 64  # rows of the path, at first, of steps whose number is not known
 LAST_STOP, FIRST_STOP, ORIGIN, END_STEP, TOTAL, STEP_SIZE = (
     PLACES[name] for name in ("last_stop", "first_stop", "origin", "end", "total", "step_size")
 )
-OF_A_CALL = {
-    name: i
-    for i, name in enumerate(["checks", "direction", "rest", "end", "rtol", "atol", "max_step", "tiny", "gap", "latest"])
-}
-"""Places of the numbers of a call among those that a kernel may take, besides args."""
+OF_A_CALL = ("checks", "direction", "rest", "end", "rtol", "atol", "max_step", "tiny", "gap", "latest")
+"""The numbers of a call that a kernel may take, besides args."""
 TROUBLE = frozenset(["unkept", "failed", "near", "short", "conservation_short", "conservation_missed"])
 """Numbers of steps that are 0, or -inf, if the steps are as they should be."""
 
 
-class Piece(NamedTuple):
-    """The result of a kernel for some lanes: rows of their path, and numbers of their states."""
-
-    lanes: slice
-    path: Array | None  # (j, N + 2, L): points, times and signed sizes, without gaps
-    numbers: Array
+Piece: TypeAlias = tuple[slice, Array | None, Array]
+"""Lanes, the rows (j + 1, N + 2, L) of their path, which are points, times and signed sizes, and numbers of states."""
 
 
 class Task(NamedTuple):
@@ -226,11 +210,8 @@ class Task(NamedTuple):
     points: Array  # (L, N)
     times: Array | None
     span: tuple[float, float]
-    values: Mapping[str, Any]  # the numbers in args, by name
-    direction: float
+    values: Mapping[str, Any]  # the numbers in args and the direction, by name
     total: int  # number of steps in lockstep
-    starts: int  # number of output times at the begin
-    keeps: bool  # whether all steps are kept
     y: Array | None  # (L, N, k): points at output times
 
 
@@ -257,13 +238,12 @@ class Plan:
         self.constants: Array = np.zeros(max(1, len(kernel.run_constants)))
         self.slots = memoryview(self.constants)
         self.slot = {name: i for i, name in enumerate(kernel.run_constants)}
-        self.own = [(i, OF_A_CALL[name]) for name, i in self.slot.items() if name in OF_A_CALL]
+        self.own = [(i, OF_A_CALL.index(name)) for name, i in self.slot.items() if name in OF_A_CALL]
         self.memory = Memory(kernel, self.lanes, self.constants) if small else None
         self.is_judged, self.rows, self.lock = problem.options.dt is not None, ROOM, threading.Lock()
-        # rows of a path up to which the lanes are not run in pieces
-        row_bytes, row_work = 8 * (self.n + 2) * self.lanes, work * self.lanes
-        most = min(LANE_STEPS_FOR_THREADS // self.lanes, OPERATIONS_PER_CALL // row_work, PATH_BYTES_PER_CALL // row_bytes)
-        self.short = most if small else 0
+        # rows of a path up to which there is one piece
+        row = max(8 * (self.n + 2) / PATH_BYTES_PER_CALL, work / OPERATIONS_PER_CALL, 1 / LANE_STEPS_FOR_THREADS)
+        self.short = int(1 / (row * self.lanes)) if small else 0
 
     @property
     def is_current(self) -> bool:
@@ -275,7 +255,9 @@ class Plan:
     ) -> Solution | None:  # fmt: skip
         """The solution, or None if the call needs a closer look."""
         length, rest, dt, total = abs(end - begin), 8 * EPS * max(abs(begin), abs(end)), numbers.dt, 0
-        if not 0.0 < length < inf or not (dt is None or rest <= (dt if type(dt) is float else np.min(dt))):
+        if not 0.0 < length < inf or (dt is not None and rest > (dt if type(dt) is float else np.min(dt))):
+            return None
+        if (numbers.shape and numbers.shape != self.shape) or not self.is_current:
             return None
         if self.lockstep:
             total = max(ceil(length / dt - (SLACK + rest / dt)), 1)  # type: ignore[operator,arg-type]
@@ -283,60 +265,53 @@ class Plan:
                 return None
         if times is not None and not _are_in_order(times, begin, end):
             return None
-        if not self.is_current or not self.lock.acquire(blocking=False):
+        if not self.lock.acquire(blocking=False):
             return None
         try:
             values = self._take(numbers, begin, end, rest, args)
-            keeps = times is None or numbers.dense or self.events is not None
-            starts = int(times is not None and float(times[0]) == begin)
+            points = points if len(self.shape) == 1 else points.reshape(self.lanes, self.n)
             y = None if times is None else np.empty((self.lanes, self.n, len(times)))
-            if len(self.shape) != 1:
-                points = points.reshape(self.lanes, self.n)
-            direction = 1.0 if end > begin else -1.0
-            return self._solution(
-                Task(numbers, points, times, (begin, end), values, direction, total, starts, keeps, y), args
-            )
+            return self._solution(Task(numbers, points, times, (begin, end), values, total, y), args)
         finally:
             self.lock.release()
 
     def _solution(self, task: Task, args: Pytree) -> Solution | None:
-        _, points, times, span, values, _, total, starts, keeps, y = task
-        if y is not None and starts:
-            y[:, :, 0] = points
+        _, points, times, span, values, total, y = task
+        keeps = y is None or task.numbers.dense or self.events is not None
         rows = total if self.lockstep or not keeps else self.rows
         if rows <= self.short:
-            piece = self._made(task, slice(0, self.lanes))
-            pieces = [] if piece is None else [piece]
-        elif chunk := self._chunk(rows, keeps=keeps):
-            cuts = pairwise([*range(0, self.lanes, chunk), self.lanes])
-            made = in_threads(lambda lanes: self._made(task, lanes), [slice(a, b) for a, b in cuts])
-            pieces = [piece for piece in made if piece is not None] if None not in made else []
+            made = [self._made(task, slice(0, self.lanes), keeps=keeps)]
         else:
-            pieces = []
-        if not pieces:
+            chunk = self._chunk(rows, keeps=keeps)
+            cuts = pairwise([*range(0, self.lanes, chunk), self.lanes] if chunk else [])
+            made = in_threads(lambda lanes: self._made(task, lanes, keeps=keeps), [slice(a, b) for a, b in cuts])
+        pieces = [piece for piece in made if piece is not None]
+        if not pieces or len(pieces) < len(made):
             return None
-        numbers = pieces[0].numbers if len(pieces) == 1 else np.concatenate([x.numbers for x in pieces], axis=1)
-        if not self.is_judged and (numbers.item(self.count) if self.lanes == 1 else numbers[self.count].max()) >= MIN_STEPS:
+        numbers = pieces[0][2] if len(pieces) == 1 else np.concatenate([x[2] for x in pieces], axis=1)
+        if not self.is_judged and numbers[self.count].max() >= MIN_STEPS:
             self.is_judged = True  # an ordinary call says whether the field is stiff
             return None
-        path, log = _joined(pieces, points, span[0]) if keeps else None, None
-        if self.events is not None and path is not None:
-            log = self.events(path, {**values, "direction": task.direction}, span)
-            if log is None:
+        path, log, n, t, shape = None, None, self.n, times, self.shape
+        if keeps:
+            path = pieces[0][1] if len(pieces) == 1 else _joined(pieces, self.lanes)
+            if self.events is not None and (log := self.events(path, values, span)) is None:
                 return None
         if y is not None:
-            t, y = times.copy(), y  # type: ignore[union-attr]
+            t = times.copy()
+            y = y[0] if not shape else y
+        elif shape:
+            t, y = path[:, n].T, path[:, :n].transpose(2, 1, 0)
+            t = t.reshape(*shape, -1)
         else:
-            t, y = path[0], path[1]  # type: ignore[index]
-        if not self.shape:
-            t, y = t if times is not None else t[0], y[0]
-        elif len(self.shape) > 1:
-            t, y = t if times is not None else t.reshape(*self.shape, -1), y.reshape(*self.shape, *y.shape[1:])
+            t, y = path[:, n, 0], path[:, :n, 0].T
+        if len(shape) > 1:
+            y = y.reshape(*shape, *y.shape[1:])
         # what the other entries need is copied: points may change
-        kept = points.copy() if self.ranked is not None or (keeps and times is not None) else None
-        return solution_of(t, y, END, lambda: self._others(task, args, numbers, path, kept, log))
+        start = None if self.ranked is None else points.copy()
+        return solution_of(t, y, END, lambda: self._others(task, args, numbers, path, start, log))
 
-    def _made(self, task: Task, lanes: slice) -> Piece | None:
+    def _made(self, task: Task, lanes: slice, *, keeps: bool) -> Piece | None:
         """Run the kernel for some lanes; None if one of them fails."""
         points, y, memory = task.points, task.y, self.memory
         if lanes.stop - lanes.start < self.lanes:
@@ -346,18 +321,18 @@ class Plan:
             memory = Memory(self.kernel, count, self.constants)
         for row, number in zip(memory.rows, self.kernel.lane_constants, strict=False):
             row[:count] = task.values[number.name][lanes] if isinstance(number, LaneConstant) else number(points)
-        parts = self._run(memory, task, points, lanes)
-        state = memory.state
-        if parts is None:
+        path = self._run(memory, task, points, lanes, keeps=keeps)
+        if path is None:
             return None
+        state = memory.state
         for i in self.trouble:
-            if (state.item(i) if self.lanes == 1 else state[i, :count].max()) > 0:
+            if (state.item(i) if count == 1 else state[i, :count].max()) > 0:
                 return None
-        if y is not None and y.shape[2] > task.starts:
-            out = memory.arrays["out"]
-            y[lanes, :, task.starts :] = out[task.starts : y.shape[2], :, :count].transpose(2, 1, 0)
-        numbers = state.copy() if memory is self.memory else state[self.kept_rows, :count]
-        return Piece(lanes, self._path(parts, count) if task.keeps else None, numbers)
+        if y is not None:
+            y[lanes] = memory.arrays["out"][: y.shape[2], :, :count].transpose(2, 1, 0)
+        if memory is self.memory:
+            return lanes, path.copy() if keeps else None, state.copy()
+        return lanes, path if keeps else None, state[self.kept_rows, :count]
 
     def _chunk(self, rows: int, *, keeps: bool) -> int:
         """Number of lanes that are run at once, whole blocks; 0 if even one block is too long for one call."""
@@ -370,8 +345,8 @@ class Plan:
         return padded(most, width) if most >= min(width, self.lanes) else 0
 
     def _take(self, numbers: Numbers, begin: float, end: float, rest: float, args: Pytree) -> Mapping[str, Any]:
-        """Take over the numbers of a call as constants of the run; returns those of args by name."""
-        dt, rtol, atol, most, least, _, _, looks, _ = numbers
+        """Take over the numbers of a call as constants of the run; returns the direction and those of args by name."""
+        dt, rtol, atol, most, least, _, _, looks, *_ = numbers
         tiny = rest if dt is not None or rest > least else least
         gap = (gap_of(looks, end - begin, self.problem.field) if "gap" in self.slot else None) or 0.0
         direction, latest = bounds_of((begin, end))
@@ -379,94 +354,93 @@ class Plan:
         slots = self.slots
         for place, i in self.own:
             slots[place] = known[i]
+        values: dict[str, Any] = {"direction": direction}
         if args is None:
-            return {}
+            return values
         check_numbers(args, self.shape)
-        values = arg_values(args, len(self.shape))
+        values |= arg_values(args, len(self.shape))
         for name in values.keys() & self.slot.keys():
             slots[self.slot[name]] = values[name]
         return values
 
-    def _run(self, memory: Memory, task: Task, points: Array, lanes: slice) -> list[Array] | None:
-        """Run the kernel for some points from begin to end; the parts of the path, None if a lane fails."""
-        numbers, _, times, (begin, end), _, direction, total, starts, keeps, _ = task
+    def _run(self, memory: Memory, task: Task, points: Array, lanes: slice, *, keeps: bool) -> Array | None:
+        """Run the kernel for some points from begin to end; the path, None if a lane fails."""
+        numbers, _, times, (begin, end), _, total, _ = task
         n, count, state, integers, floats = self.n, len(points), memory.state, memory.integers, memory.floats
-        width = state.shape[1]
-        state[:] = memory.first
+        width, starts, last = state.shape[1], 0, 0
+        memory.block[:] = memory.first
         memory.points[:] = points
         if times is not None:
-            last = len(times) - int(times[-1] == end)
-            stops = memory.room("stops", last + 2)
-            stops[:last], stops[last : last + 2] = times[:last], end
-            memory.room("out", last + 2, n, width)
-            integers[LAST_STOP], integers[FIRST_STOP] = last, starts
-        else:
-            memory.room("stops", 2)[:2] = end
-            memory.room("out", 2, n, width)
-            integers[LAST_STOP] = integers[FIRST_STOP] = 0
-        floats[ORIGIN] = begin
+            starts, last = int(times[0] == begin), len(times) - int(times[-1] == end)
+            memory.room("out", last + 2, n, width)[:starts] = state[:n]
+            memory.room("stops", last + 2)[:last] = times[:last]
+        memory.arrays["stops"][last : last + 2] = end
+        integers[LAST_STOP], integers[FIRST_STOP], floats[ORIGIN] = last, starts, begin
         size: Any = numbers.dt
         if size is None:
             size = numbers.first_step or numbers.min_step or inf
         else:
-            size = direction * (size if type(size) is float else size.reshape(-1)[lanes])
+            size = (1.0 if end > begin else -1.0) * (size if type(size) is float else size.reshape(-1)[lanes])
         if self.lockstep:
             state[self.place["count"]] = total
-            integers[END_STEP], integers[TOTAL], floats[STEP_SIZE] = total, total, size
+            integers[TOTAL], floats[STEP_SIZE] = total, size
         else:
-            state[self.place["t"], :count], state[self.place["h"], :count] = begin, size
-            if starts:
-                for name in {"stop", "kept"} & self.place.keys():
-                    state[self.place[name], :count] = starts
+            for name, x in (("t", begin), ("h", size), *((("stop", starts), ("kept", starts)) if starts else ())):
+                if name in self.place:
+                    state[self.place[name], :count] = x
         if count < width:
-            state[:, count:] = state[:, :1]
-        memory.start[:] = memory.top
+            memory.block[:, :, count:] = memory.block[:, :, :1]
         if not self.lockstep:
-            return self._to_the_end(memory, count, numbers.max_steps, keeps=keeps)
-        parts = [memory.room("path", total, n + 2, width)[:total]] if keeps else []
+            return self._to_the_end(memory, count, task, keeps=keeps)
+        if keeps:
+            path = memory.path(total, n + 2)
+            path[0, :n], path[0, n] = state[:n], begin
+        integers[END_STEP] = total
         self.kernel.run(memory.address)
-        alive = state[self.place["alive"]]
-        return parts if (alive[0] if count == 1 else alive[:count].min()) > 0 else None
+        alive = self.place["alive"]
+        if (state.item(alive) if count == 1 else state[alive, :count].min()) <= 0:
+            return None
+        return path[: total + 1, :, :count] if keeps else state
 
-    def _to_the_end(self, memory: Memory, count: int, most: float, *, keeps: bool) -> list[Array] | None:
-        """Run the kernel until all lanes are at the end, by steps of their own sizes; the parts of the path."""
-        parts, width, size, state = list[Array](), memory.state.shape[1], self.n + 1, memory.state
+    def _to_the_end(self, memory: Memory, count: int, task: Task, *, keeps: bool) -> Array | None:
+        """Run the kernel until all lanes are at the end, by steps of their own sizes; the path."""
+        parts, size, n, state, integers = list[Array](), self.n + 1, self.n, memory.state, memory.integers
         alive, taken = self.place["alive"], self.place["count"]
-        memory.integers[END_STEP] = max(1, OPERATIONS_PER_CALL // (self.work * count))
+        integers[END_STEP] = max(1, OPERATIONS_PER_CALL // (self.work * count))
         while True:
             if keeps:
-                path = memory.room("path", self.rows, size + 1, width)
-                memory.integers[END_STEP] = len(path)
+                path = memory.path(self.rows, n + 2)
                 path[:, size] = 0.0
+                path[0, :n], path[0, n], path[0, size] = state[:n], task.span[0], 1.0
+                integers[END_STEP] = len(path) - 1
             self.kernel.run(memory.address)
             if keeps:
-                parts.append(path[path[:, size, :count].any(axis=-1)] if count > 1 else path[path[:, size, 0] != 0])
+                moved = path[:, size, 0] != 0 if count == 1 else path[:, size, :count].any(axis=-1)
+                moved[0] = not parts
+                parts.append(path[moved])
             if count == 1:
-                least, most_left, most_taken = abs(left := state.item(alive * width)), left, state.item(taken * width)
+                least, most_left, most = abs(left := state.item(alive)), left, state.item(taken)
             else:
                 lanes = state[alive, :count]
-                least, most_left, most_taken = np.abs(lanes).min(), lanes.max(), state[taken, :count].max()
-            if least == 0 or most_taken >= most:
+                least, most_left, most = np.abs(lanes).min(), lanes.max(), state[taken, :count].max()
+            if least == 0 or most >= task.numbers.max_steps:
                 return None
             if most_left < 0:
-                return parts
+                break
             if keeps:  # the path is full
                 memory.arrays["path"], self.rows = np.zeros(0), 2 * self.rows
-
-    def _path(self, parts: list[Array], count: int) -> Array:
-        """The path of some lanes, without gaps, from its parts."""
+        if not keeps:
+            return state
         path = (parts[0] if len(parts) == 1 else np.concatenate(parts))[..., :count]
-        if self.lockstep or count == 1:
+        moved = path[:, size] != 0
+        if count == 1 or moved.all():
             return path
-        moved = path[:, self.n + 1] != 0
-        if not moved.all():
-            order = np.argsort(~moved, axis=0, kind="stable")[: int(moved.sum(axis=0).max(initial=0))]
-            path, moved = (np.take_along_axis(x, i, axis=0) for x, i in ((path, order[:, None]), (moved, order)))
-            path = np.where(moved[:, None], path, np.nan)
-        return path
+        order = np.argsort(~moved, axis=0, kind="stable")[: int(moved.sum(axis=0).max(initial=0))]
+        path, moved = (np.take_along_axis(x, i, axis=0) for x, i in ((path, order[:, None]), (moved, order)))
+        return np.where(moved[:, None], path, np.nan)
 
     def _others(
-        self, task: Task, args: Pytree, numbers: Array, path: tuple[Array, Array, Array] | None, start: Array | None,
+        self, task: Task, args: Pytree, numbers: Array, path: Array | None, start: Array | None,
         log: EventLog | None,
     ) -> dict[str, object]:  # fmt: skip
         """The other entries of a solution, which are made when one of them is asked for."""
@@ -482,18 +456,14 @@ class Plan:
         calls = calls + int(graph.first is not None and given.dt is None and not (given.first_step or given.min_step))
         steps = row["count"].astype(int)
         check = replace(p.options, looks=given.looks).check(p.field.time_dependent)
-        report = statistics.report(
-            p.action, p.options.clock, p.orbit_dimension, task.direction, check=check, engine=self.kernel.engine
-        )
+        how: dict[str, Any] = {"check": check, "engine": self.kernel.engine}
+        report = statistics.report(p.action, p.options.clock, p.orbit_dimension, task.values["direction"], **how)
 
         def dense() -> DenseSolution:
-            t, y, sizes = path  # type: ignore[misc]
-            first = y[..., 0] if start is None else start
-            psi = Generator(bound, p.orbit_dimension, first.reshape(*shape, self.n))
-            begin = np.full(shape, p.span[0])
-            step = p.step.prepare(p.action, psi, psi.start, begin)  # type: ignore[arg-type]
-            times, points = (np.moveaxis(x.reshape(*shape, *x.shape[1:]), -1, 0) for x in (t, y))
-            sizes = np.moveaxis(np.nan_to_num(sizes).reshape(*shape, -1), -1, 0)
+            steps = path.swapaxes(1, 2).reshape(-1, *shape, self.n + 2)  # type: ignore[index]
+            times, points, sizes = steps[..., self.n], steps[..., : self.n], np.nan_to_num(steps[1:, ..., self.n + 1])
+            psi = Generator(bound, p.orbit_dimension, points[0])
+            step = p.step.prepare(p.action, psi, psi.start, np.full(shape, p.span[0]))  # type: ignore[arg-type]
             return DenseSolution(p.action, psi, step, times, points, sizes, nominal=p.options.nominal)
 
         t_events, y_events = (None, None) if log is None else log.lists()
@@ -506,15 +476,10 @@ class Plan:
         }  # fmt: skip
 
 
-def _joined(pieces: Sequence[Piece], points: Array, begin: float) -> tuple[Array, Array, Array]:
-    """Times (L, j + 1), points (L, N, j + 1) and sizes (L, j) of the paths of all lanes, filled up with NaN."""
-    (lanes, n), paths = points.shape, [(x.lanes, x.path) for x in pieces if x.path is not None]
-    rows = len(paths[0][1]) if len(paths) == 1 else max(len(path) for _, path in paths)
-    whole = np.empty((lanes, n + 2, rows + 1))
-    whole[:, :n, 0], whole[:, n, 0] = points, begin
+def _joined(pieces: Sequence[Piece], lanes: int) -> Array:
+    """The path of all lanes, filled up with NaN."""
+    paths = [(here, path) for here, path, _ in pieces if path is not None]
+    whole = np.full((max(len(path) for _, path in paths), paths[0][1].shape[1], lanes), np.nan)
     for here, path in paths:
-        count = len(path)
-        whole[here, :, 1 : count + 1] = path.transpose(2, 1, 0)
-        if count < rows:
-            whole[here, :, count + 1 :] = np.nan
-    return whole[:, n], whole[:, :n], whole[:, n + 1, 1:]
+        whole[: len(path), :, here] = path
+    return whole
