@@ -265,10 +265,8 @@ class Parts:
 
     def changed(self) -> bool:
         """Whether the code of a function, or what it names, is another one than before."""
-        for row in self._rows:
-            if (row[2] is not None or row[0]() is not row[1]) and _has_changed(*row):
-                return True
-        return False
+        rows = [row for row in self._rows if row[2] is not None or row[0]() is not row[1]]
+        return any(_has_changed(*row) for row in rows) if rows else False
 
 
 @final

@@ -190,8 +190,8 @@ def ranked(count: int) -> IntegerArray:
 CHUNK = 16_384  # number of lanes, at most, that are copied in, run, and copied out at once
 SMALL = 64  # number of lanes up to which memory is kept from call to call
 ROOM = 64  # rows of the path, at first, of steps whose number is not known
-LAST_STOP, FIRST_STOP, ORIGIN, END_STEP, TOTAL, STEP_SIZE = (
-    PLACES[name] for name in ("last_stop", "first_stop", "origin", "end", "total", "step_size")
+LAST_STOP, FIRST_STOP, ORIGIN, BEGIN, END_STEP, TOTAL, STEP_SIZE = (
+    PLACES[name] for name in ("last_stop", "first_stop", "origin", "begin", "end", "total", "step_size")
 )
 OF_A_CALL = ("checks", "direction", "rest", "end", "rtol", "atol", "max_step", "tiny", "gap", "latest")
 """The numbers of a call that a kernel may take, besides args."""
@@ -203,16 +203,9 @@ Piece: TypeAlias = tuple[slice, Array | None, Array]
 """Lanes, the rows (j + 1, N + 2, L) of their path, which are points, times and signed sizes, and numbers of states."""
 
 
-class Task(NamedTuple):
-    """The order that a call gives to a kernel."""
-
-    numbers: Numbers
-    points: Array  # (L, N)
-    times: Array | None
-    span: tuple[float, float]
-    values: Mapping[str, Any]  # the numbers in args and the direction, by name
-    total: int  # number of steps in lockstep
-    y: Array | None  # (L, N, k): points at output times
+Task: TypeAlias = tuple[Numbers, Array, Array | None, tuple[float, float], Mapping[str, Any], int, Array | None, bool]
+"""Numbers of a call, points (L, N), output times, ends of the span, numbers of args and the direction by name, number
+of steps in lockstep, points (L, N, k) at output times, and whether all steps are kept."""
 
 
 @final
@@ -227,6 +220,7 @@ class Plan:
         self.kernel, self.problem, self.step, self.work, self.prepared = kernel, problem, step, work, calls
         self.shape, self.n, self.lanes = shape[:-1], shape[-1], int(np.prod(shape[:-1], dtype=int))
         self.place = {name: i for i, name in enumerate(kernel.names)}
+        self.alive, self.taken, self.time, self.size = (self.place.get(x, 0) for x in ("alive", "count", "t", "h"))
         self.lockstep = graph.reached is None
         recorded = {f"e{i}": name for i, name in enumerate([*graph.largest, *graph.summed])}
         self.trouble = [self.place[e] for e, name in recorded.items() if name in TROUBLE]
@@ -257,76 +251,114 @@ class Plan:
         length, rest, dt, total = abs(end - begin), 8 * EPS * max(abs(begin), abs(end)), numbers.dt, 0
         if not 0.0 < length < inf or (dt is not None and rest > (dt if type(dt) is float else np.min(dt))):
             return None
-        if (numbers.shape and numbers.shape != self.shape) or not self.is_current:
+        if (numbers.shape and numbers.shape != self.shape) or not (self.events is None or self.is_current):
             return None
         if self.lockstep:
             total = max(ceil(length / dt - (SLACK + rest / dt)), 1)  # type: ignore[operator,arg-type]
             if total >= numbers.max_steps:
                 return None
-        if times is not None and not _are_in_order(times, begin, end):
-            return None
-        if not self.lock.acquire(blocking=False):
+        if (times is not None and not _are_in_order(times, begin, end)) or not self.lock.acquire(blocking=False):
             return None
         try:
             values = self._take(numbers, begin, end, rest, args)
             points = points if len(self.shape) == 1 else points.reshape(self.lanes, self.n)
             y = None if times is None else np.empty((self.lanes, self.n, len(times)))
-            return self._solution(Task(numbers, points, times, (begin, end), values, total, y), args)
+            keeps = y is None or numbers.dense or self.events is not None
+            return self._solution((numbers, points, times, (begin, end), values, total, y, keeps), args)
         finally:
             self.lock.release()
 
     def _solution(self, task: Task, args: Pytree) -> Solution | None:
-        _, points, times, span, values, total, y = task
-        keeps = y is None or task.numbers.dense or self.events is not None
+        _, points, times, span, values, total, y, keeps = task
         rows = total if self.lockstep or not keeps else self.rows
         if rows <= self.short:
-            made = [self._made(task, slice(0, self.lanes), keeps=keeps)]
+            piece = self._made(task, slice(0, self.lanes), self.memory)
+            if piece is None:
+                return None
+            _, path, numbers = piece
         else:
             chunk = self._chunk(rows, keeps=keeps)
             cuts = pairwise([*range(0, self.lanes, chunk), self.lanes] if chunk else [])
-            made = in_threads(lambda lanes: self._made(task, lanes, keeps=keeps), [slice(a, b) for a, b in cuts])
-        pieces = [piece for piece in made if piece is not None]
-        if not pieces or len(pieces) < len(made):
-            return None
-        numbers = pieces[0][2] if len(pieces) == 1 else np.concatenate([x[2] for x in pieces], axis=1)
+            made = in_threads(lambda lanes: self._made(task, lanes), [slice(a, b) for a, b in cuts])
+            pieces = [piece for piece in made if piece is not None]
+            if not pieces or len(pieces) < len(made):
+                return None
+            path, numbers = (
+                _joined(pieces, self.lanes) if keeps else None,
+                np.concatenate([x[2] for x in pieces], axis=1),
+            )
         if not self.is_judged and numbers[self.count].max() >= MIN_STEPS:
             self.is_judged = True  # an ordinary call says whether the field is stiff
             return None
-        path, log, n, t, shape = None, None, self.n, times, self.shape
-        if keeps:
-            path = pieces[0][1] if len(pieces) == 1 else _joined(pieces, self.lanes)
-            if self.events is not None and (log := self.events(path, values, span)) is None:
-                return None
+        t: Any = times
+        result: Any = y
+        n, shape, log = self.n, self.shape, None
+        if path is not None and self.events is not None and (log := self.events(path, values, span)) is None:
+            return None
         if y is not None:
-            t = times.copy()
-            y = y[0] if not shape else y
-        elif shape:
-            t, y = path[:, n].T, path[:, :n].transpose(2, 1, 0)
+            t, result = t.copy(), y if shape else y[0]
+        elif path is not None and shape:
+            t, result = path[:, n].T, path[:, :n].transpose(2, 1, 0)
             t = t.reshape(*shape, -1)
-        else:
-            t, y = path[:, n, 0], path[:, :n, 0].T
+        elif path is not None:
+            t, result = path[:, n, 0], path[:, :n, 0].T
         if len(shape) > 1:
-            y = y.reshape(*shape, *y.shape[1:])
+            result = result.reshape(*shape, *result.shape[1:])
         # what the other entries need is copied: points may change
         start = None if self.ranked is None else points.copy()
-        return solution_of(t, y, END, lambda: self._others(task, args, numbers, path, start, log))
+        return solution_of(t, result, END, lambda: self._others(task, args, numbers, path, start, log))
 
-    def _made(self, task: Task, lanes: slice, *, keeps: bool) -> Piece | None:
-        """Run the kernel for some lanes; None if one of them fails."""
-        points, y, memory = task.points, task.y, self.memory
-        if lanes.stop - lanes.start < self.lanes:
-            points, memory = points[lanes], None
-        count = len(points)
+    def _made(self, task: Task, lanes: slice, memory: Memory | None = None) -> Piece | None:
+        """Run the kernel for some lanes from begin to end; None if one of them fails."""
+        numbers, points, times, (begin, end), values, total, y, keeps = task
         if memory is None:  # pieces run in threads
-            memory = Memory(self.kernel, count, self.constants)
+            points = points[lanes]
+            memory = Memory(self.kernel, len(points), self.constants)
+        count, n, state, integers, cells = len(points), self.n, memory.state, memory.integers, memory.cells
+        width, starts, last = state.shape[1], 0, 0
         for row, number in zip(memory.rows, self.kernel.lane_constants, strict=False):
-            row[:count] = task.values[number.name][lanes] if isinstance(number, LaneConstant) else number(points)
-        path = self._run(memory, task, points, lanes, keeps=keeps)
+            row[:count] = values[number.name][lanes] if isinstance(number, LaneConstant) else number(points)
+        memory.block[:] = memory.first
+        memory.points[:] = points
+        if times is not None:
+            starts, last = int(times[0] == begin), len(times) - int(times[-1] == end)
+            memory.room("out", last + 2, n, width)[:starts] = state[:n]
+            memory.room("stops", last + 2)[:last] = times[:last]
+        memory.arrays["stops"][last : last + 2] = end
+        integers[LAST_STOP], integers[FIRST_STOP], memory.floats[ORIGIN] = last, starts, begin
+        size: Any = numbers.dt
+        if size is None:
+            size = numbers.first_step or numbers.min_step or inf
+        else:
+            size = values["direction"] * (size if type(size) is float else size.reshape(-1)[lanes])
+        if self.lockstep:
+            integers[END_STEP] = integers[TOTAL] = total
+            memory.floats[STEP_SIZE] = size
+        elif width == 1 and not starts:
+            cells[self.time], cells[self.size] = begin, size
+        else:
+            for name, x in (("t", begin), ("h", size), ("stop", starts), ("kept", starts)):
+                if name in self.place:
+                    state[self.place[name], :count] = x
+        if count < width:
+            memory.block[:, :, count:] = memory.block[:, :, :1]
+        if not self.lockstep:
+            path = self._to_the_end(memory, count, task)
+        else:
+            path = memory.path(total, n + 2) if keeps else state
+            if keeps:
+                path[0, :n], path[0, n] = state[:n], begin
+                path = path[: total + 1] if count == width else path[: total + 1, :, :count]
+            self.kernel.run(memory.address)
+            alive = cells[self.alive] if width == 1 else state[self.alive, :count].min()
+            if alive <= 0:
+                return None
+            if cells[self.taken * width] != total:  # which is not counted
+                state[self.taken] = total
         if path is None:
             return None
-        state = memory.state
         for i in self.trouble:
-            if (state.item(i) if count == 1 else state[i, :count].max()) > 0:
+            if (cells[i] if width == 1 else state[i, :count].max()) > 0:
                 return None
         if y is not None:
             y[lanes] = memory.arrays["out"][: y.shape[2], :, :count].transpose(2, 1, 0)
@@ -363,77 +395,42 @@ class Plan:
             slots[self.slot[name]] = values[name]
         return values
 
-    def _run(self, memory: Memory, task: Task, points: Array, lanes: slice, *, keeps: bool) -> Array | None:
-        """Run the kernel for some points from begin to end; the path, None if a lane fails."""
-        numbers, _, times, (begin, end), _, total, _ = task
-        n, count, state, integers, floats = self.n, len(points), memory.state, memory.integers, memory.floats
-        width, starts, last = state.shape[1], 0, 0
-        memory.block[:] = memory.first
-        memory.points[:] = points
-        if times is not None:
-            starts, last = int(times[0] == begin), len(times) - int(times[-1] == end)
-            memory.room("out", last + 2, n, width)[:starts] = state[:n]
-            memory.room("stops", last + 2)[:last] = times[:last]
-        memory.arrays["stops"][last : last + 2] = end
-        integers[LAST_STOP], integers[FIRST_STOP], floats[ORIGIN] = last, starts, begin
-        size: Any = numbers.dt
-        if size is None:
-            size = numbers.first_step or numbers.min_step or inf
-        else:
-            size = (1.0 if end > begin else -1.0) * (size if type(size) is float else size.reshape(-1)[lanes])
-        if self.lockstep:
-            state[self.place["count"]] = total
-            integers[TOTAL], floats[STEP_SIZE] = total, size
-        else:
-            for name, x in (("t", begin), ("h", size), *((("stop", starts), ("kept", starts)) if starts else ())):
-                if name in self.place:
-                    state[self.place[name], :count] = x
-        if count < width:
-            memory.block[:, :, count:] = memory.block[:, :, :1]
-        if not self.lockstep:
-            return self._to_the_end(memory, count, task, keeps=keeps)
-        if keeps:
-            path = memory.path(total, n + 2)
-            path[0, :n], path[0, n] = state[:n], begin
-        integers[END_STEP] = total
-        self.kernel.run(memory.address)
-        alive = self.place["alive"]
-        if (state.item(alive) if count == 1 else state[alive, :count].min()) <= 0:
-            return None
-        return path[: total + 1, :, :count] if keeps else state
-
-    def _to_the_end(self, memory: Memory, count: int, task: Task, *, keeps: bool) -> Array | None:
+    def _to_the_end(self, memory: Memory, count: int, task: Task) -> Array | None:
         """Run the kernel until all lanes are at the end, by steps of their own sizes; the path."""
         parts, size, n, state, integers = list[Array](), self.n + 1, self.n, memory.state, memory.integers
-        alive, taken = self.place["alive"], self.place["count"]
+        keeps, most_steps, one = task[7], task[0].max_steps, state.shape[1] == 1
         integers[END_STEP] = max(1, OPERATIONS_PER_CALL // (self.work * count))
         while True:
             if keeps:
                 path = memory.path(self.rows, n + 2)
-                path[:, size] = 0.0
-                path[0, :n], path[0, n], path[0, size] = state[:n], task.span[0], 1.0
-                integers[END_STEP] = len(path) - 1
+                path[0, :n], path[0, n], integers[END_STEP] = state[:n], task[3][0], len(path) - 1
+                if not one:
+                    path[1:, size] = 0.0
+            integers[BEGIN] = 0
             self.kernel.run(memory.address)
-            if keeps:
-                moved = path[:, size, 0] != 0 if count == 1 else path[:, size, :count].any(axis=-1)
-                moved[0] = not parts
-                parts.append(path[moved])
-            if count == 1:
-                least, most_left, most = abs(left := state.item(alive)), left, state.item(taken)
+            if one:
+                least, most_left, most = abs(left := memory.cells[self.alive]), left, memory.cells[self.taken]
             else:
-                lanes = state[alive, :count]
-                least, most_left, most = np.abs(lanes).min(), lanes.max(), state[taken, :count].max()
-            if least == 0 or most >= task.numbers.max_steps:
+                lanes = state[self.alive, :count]
+                least, most_left, most = np.abs(lanes).min(), lanes.max(), state[self.taken, :count].max()
+            if least == 0 or most >= most_steps:
                 return None
+            if keeps:
+                part = path[: integers[BEGIN] + 1] if one else path
+                if not one or len(part) != most + 1:  # some rows are not steps
+                    part[0, size] = not parts
+                    part = part[part[:, size, 0] != 0 if one else part[:, size, :count].any(axis=-1)]
+                parts.append(part)
             if most_left < 0:
                 break
             if keeps:  # the path is full
                 memory.arrays["path"], self.rows = np.zeros(0), 2 * self.rows
-        if not keeps:
-            return state
-        path = (parts[0] if len(parts) == 1 else np.concatenate(parts))[..., :count]
+        path = state if not keeps else parts[0] if len(parts) == 1 else np.concatenate(parts)
+        if one or not keeps:
+            return path
+        path = path[..., :count]
         moved = path[:, size] != 0
-        if count == 1 or moved.all():
+        if moved.all():
             return path
         order = np.argsort(~moved, axis=0, kind="stable")[: int(moved.sum(axis=0).max(initial=0))]
         path, moved = (np.take_along_axis(x, i, axis=0) for x, i in ((path, order[:, None]), (moved, order)))
@@ -444,20 +441,20 @@ class Plan:
         log: EventLog | None,
     ) -> dict[str, object]:  # fmt: skip
         """The other entries of a solution, which are made when one of them is asked for."""
-        p, shape, graph, given = self.problem, self.shape, self.kernel.graph, task.numbers
+        p, shape, graph, given = self.problem, self.shape, self.kernel.graph, task[0]
         bound = p.field if args is None else p.field.with_args(args)
-        p = replace(p, bound=bound, span=(np.float64(task.span[0]), np.float64(task.span[1])))
+        p = replace(p, bound=bound, span=(np.float64(task[3][0]), np.float64(task[3][1])))
         row = {name: x[: self.lanes] for name, x in zip(self.kept, numbers, strict=True)}
         statistics = StepStatistics(self.step, shape)
         if self.ranked is not None and start is not None:
             note_ranks(statistics, p, self.step, start[self.ranked], self.ranked, shape)
-        statistics.add_compiled(np.arange(self.lanes), records_of(self.kernel, row), task.span)
+        statistics.add_compiled(np.arange(self.lanes), records_of(self.kernel, row), task[3])
         calls = calls_of(self.kernel, row, row.get("tries", row["count"]))
         calls = calls + int(graph.first is not None and given.dt is None and not (given.first_step or given.min_step))
         steps = row["count"].astype(int)
         check = replace(p.options, looks=given.looks).check(p.field.time_dependent)
         how: dict[str, Any] = {"check": check, "engine": self.kernel.engine}
-        report = statistics.report(p.action, p.options.clock, p.orbit_dimension, task.values["direction"], **how)
+        report = statistics.report(p.action, p.options.clock, p.orbit_dimension, task[4]["direction"], **how)
 
         def dense() -> DenseSolution:
             steps = path.swapaxes(1, 2).reshape(-1, *shape, self.n + 2)  # type: ignore[index]
@@ -472,7 +469,7 @@ class Plan:
             "nfev": self.prepared + int(calls.max()), "message": MESSAGES[END],
             "n_steps": steps.reshape(shape) if shape else int(steps[0]), "report": report,
             "statuses": np.full(shape, END) if shape else END, "njev": 0, "nlu": 0,
-            "_steps": dense if task.times is None or given.dense else None,
+            "_steps": dense if task[2] is None or given.dense else None,
         }  # fmt: skip
 
 
