@@ -498,12 +498,14 @@ class PlannedEvents:
         k, _, lanes = path.shape
         values = {**values, "length": abs(span[1] - span[0])}
         made = self.at_points(path[:, : n + 1].transpose(1, 2, 0).reshape(n + 1, -1), values)
+        log = EventLog(events.count, np.shape(self.problem.start)[:-1], n)
+        if all((np.minimum.reduce(made, axis=1) * np.maximum.reduce(made, axis=1) > 0).tolist()):
+            return log  # no value and no slope changes its sign
         g, ahead, back = made.reshape(3, events.count, lanes, k)
         rows: list[tuple[int, int, float, int, Any, Array, bool]] = []
         starts, ends = g[..., :-1], g[..., 1:]
         same = starts * ends > 0
         turning = same & (starts * back[..., 1:] > 0) & (starts * ahead[..., :-1] < 0)
-        log = EventLog(events.count, np.shape(self.problem.start)[:-1], n)
         if np.logical_and.reduce(same > turning, axis=None):
             return log
         t, y, sizes = path[:, n].T, path[:, :n].transpose(2, 1, 0), path[1:, n + 1].T

@@ -13,6 +13,7 @@ from typing import Any, final
 import numpy as np
 
 from liehom.base.errors import InputError
+from liehom.base.pytrees import leaves
 from liehom.base.typing import Array, IntegerArray, Pytree
 from liehom.flow.action.fingerprint import Watch
 from liehom.flow.engines.compiled_events import EventSearch, planned_events
@@ -120,10 +121,11 @@ class LlvmEngine:
                 numbers = known_numbers(**others)
             except TypeError:  # sizes in an array are not hashable
                 numbers = numbers_of(**others)
-            plan = None if numbers is None else self._plans.get(form_of(points.shape, numbers, times, events, args))
+            found = None if args is None else leaves(args)
+            plan = None if numbers is None else self._plans.get(form_of(points.shape, numbers, times, events, found))
             if numbers is None or plan is None or self._watch.changed():
                 return None
-            return plan(numbers, points, float(first), float(last), times, args)  # type: ignore[has-type]
+            return plan(numbers, points, float(first), float(last), times, args, found)  # type: ignore[has-type]
         except (TypeError, ValueError, OverflowError):  # not numbers
             return None
 
@@ -139,7 +141,7 @@ class LlvmEngine:
         numbers = with_form(Numbers(dt=dt, looks=o.looks, dense=o.dense_output))
         if numbers is None:
             return
-        form = form_of(start.shape, numbers, o.t_eval, o.events, problem.args)
+        form = form_of(start.shape, numbers, o.t_eval, o.events, None if problem.args is None else leaves(problem.args))
         dimension = int(np.max(problem.orbit_dimension))
         known = self._plans.get(form)
         if (known is not None and known.is_current) or not serves_all_points(problem, run.step, dimension):

@@ -15,7 +15,7 @@ import numpy as np
 
 from liehom.base.errors import ConvergenceError, LiehomError
 from liehom.base.objects import refuse_masked
-from liehom.base.pytrees import check_numbers
+from liehom.base.pytrees import Leaf, PerTrajectory
 from liehom.base.typing import Array, IntegerArray, Pytree
 from liehom.flow.action.field import check_point
 from liehom.flow.action.space import Action
@@ -32,7 +32,7 @@ from liehom.flow.engines.lanes import (
     in_threads,
     records_of,
 )
-from liehom.flow.engines.traced_step import arg_values, args_form, args_of_lanes
+from liehom.flow.engines.traced_step import arg_values, args_of_lanes, numbers_in
 from liehom.flow.methods.stability import MIN_STEPS
 from liehom.flow.run.check import gap_of
 from liehom.flow.run.control import SLACK
@@ -132,10 +132,18 @@ def _are_in_order(times: Array, begin: float, end: float) -> bool:
     return bool((steps > 0).all() if end > begin else (steps < 0).all())
 
 
-def form_of(shape: tuple[int, ...], numbers: Numbers, t_eval: object, events: object, args: Pytree) -> Hashable:
-    """The form of a call: calls of one form have one plan."""
-    form = None if args is None else args_form(args, len(shape) - 1)
+def form_of(
+    shape: tuple[int, ...], numbers: Numbers, t_eval: object, events: object, args: Sequence[Leaf] | None
+) -> Hashable:  # fmt: skip
+    """The form of a call, with the leaves of its args: calls of one form have one plan."""
+    form = None if args is None else tuple([_form_of_leaf(*leaf) for leaf in args])
     return shape, numbers.form, t_eval is None, form, None if events is None else events_key(events)
+
+
+def _form_of_leaf(path: str, x: Any) -> Hashable:  # noqa: ANN401 - a leaf may be anything
+    """The place, the type and the shape of a leaf; a number is not of the type of anything that is refused."""
+    inner = x.value if isinstance(x, PerTrajectory) else x
+    return path, type(x), type(inner), getattr(inner, "dtype", None), getattr(inner, "shape", None)
 
 
 def serves_all_points(problem: Problem, step: Step, dimension: int) -> bool:
@@ -233,6 +241,8 @@ class Plan:
         self.slots = memoryview(self.constants)
         self.slot = {name: i for i, name in enumerate(kernel.run_constants)}
         self.own = [(i, OF_A_CALL.index(name)) for name, i in self.slot.items() if name in OF_A_CALL]
+        names = () if problem.args is None else arg_values(problem.args, len(self.shape))
+        self.names = [(name, self.slot.get(name)) for name in names]
         self.memory = Memory(kernel, self.lanes, self.constants) if small else None
         self.is_judged, self.rows, self.lock = problem.options.dt is not None, ROOM, threading.Lock()
         # rows of a path up to which there is one piece
@@ -245,7 +255,8 @@ class Plan:
         return self.events is None or not self.events.parts.changed()
 
     def __call__(
-        self, numbers: Numbers, points: Array, begin: float, end: float, times: Array | None, args: Pytree
+        self, numbers: Numbers, points: Array, begin: float, end: float, times: Array | None,
+        args: Pytree, found: Sequence[Leaf] | None,
     ) -> Solution | None:  # fmt: skip
         """The solution, or None if the call needs a closer look."""
         length, rest, dt, total = abs(end - begin), 8 * EPS * max(abs(begin), abs(end)), numbers.dt, 0
@@ -260,7 +271,7 @@ class Plan:
         if (times is not None and not _are_in_order(times, begin, end)) or not self.lock.acquire(blocking=False):
             return None
         try:
-            values = self._take(numbers, begin, end, rest, args)
+            values = self._take(numbers, begin, end, rest, found)
             points = points if len(self.shape) == 1 else points.reshape(self.lanes, self.n)
             y = None if times is None else np.empty((self.lanes, self.n, len(times)))
             keeps = y is None or numbers.dense or self.events is not None
@@ -376,7 +387,9 @@ class Plan:
             most = min(most, PATH_BYTES_PER_CALL // (8 * (self.n + 2) * rows))
         return padded(most, width) if most >= min(width, self.lanes) else 0
 
-    def _take(self, numbers: Numbers, begin: float, end: float, rest: float, args: Pytree) -> Mapping[str, Any]:
+    def _take(
+        self, numbers: Numbers, begin: float, end: float, rest: float, found: Sequence[Leaf] | None
+    ) -> Mapping[str, Any]:
         """Take over the numbers of a call as constants of the run; returns the direction and those of args by name."""
         dt, rtol, atol, most, least, _, _, looks, *_ = numbers
         tiny = rest if dt is not None or rest > least else least
@@ -387,12 +400,12 @@ class Plan:
         for place, i in self.own:
             slots[place] = known[i]
         values: dict[str, Any] = {"direction": direction}
-        if args is None:
+        if found is None:
             return values
-        check_numbers(args, self.shape)
-        values |= arg_values(args, len(self.shape))
-        for name in values.keys() & self.slot.keys():
-            slots[self.slot[name]] = values[name]
+        for (name, place), number in zip(self.names, numbers_in(found, len(self.shape)), strict=True):
+            values[name] = number
+            if place is not None:
+                slots[place] = number
         return values
 
     def _to_the_end(self, memory: Memory, count: int, task: Task) -> Array | None:

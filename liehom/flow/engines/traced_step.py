@@ -57,12 +57,20 @@ def traced_args(tape: Tape, args: Pytree, lead: int = 1) -> Pytree:
 
 def arg_values(args: Pytree, lead: int) -> dict[str, Any]:
     """The numbers in args by their names: numbers, or arrays (L,) for slices of the trajectories."""
-    numbers: dict[str, Any] = {}
-    for leaf in leaves(args):
-        value, shape, varies = _of(leaf, lead)
-        for entry in np.ndindex(shape):
-            number = value[(..., *entry)].reshape(-1) if varies else value[entry] if entry else value
-            numbers[_name(leaf.path, entry)] = number
+    found = leaves(args)
+    names = [_name(leaf.path, entry) for leaf in found for entry in np.ndindex(_of(leaf, lead)[1])]
+    return dict(zip(names, numbers_in(found, lead), strict=True))
+
+
+def numbers_in(found: Sequence[Leaf], lead: int) -> list[Any]:
+    """The numbers in the leaves of args, in their order."""
+    numbers: list[Any] = []
+    for _, value in found:
+        if isinstance(value, PerTrajectory):
+            rows = value.value.reshape(int(np.prod(value.value.shape[:lead], dtype=int)), -1)
+            numbers += list(rows.T)
+        else:
+            numbers += np.ravel(value).tolist()
     return numbers
 
 
