@@ -57,13 +57,17 @@ def traced_args(tape: Tape, args: Pytree, lead: int = 1) -> Pytree:
 
 def arg_values(args: Pytree, lead: int) -> dict[str, Any]:
     """The numbers in args by their names: numbers, or arrays (L,) for slices of the trajectories."""
-    found = leaves(args)
-    names = [_name(leaf.path, entry) for leaf in found for entry in np.ndindex(_of(leaf, lead)[1])]
-    return dict(zip(names, numbers_in(found, lead), strict=True))
+    numbers: dict[str, Any] = {}
+    for leaf in leaves(args):
+        value, shape, varies = _of(leaf, lead)
+        for entry in np.ndindex(shape):
+            number = value[(..., *entry)].reshape(-1) if varies else value[entry] if entry else value
+            numbers[_name(leaf.path, entry)] = number
+    return numbers
 
 
 def numbers_in(found: Sequence[Leaf], lead: int) -> list[Any]:
-    """The numbers in the leaves of args, in their order."""
+    """The numbers in the leaves of args, without JAX, in the order of `arg_values`."""
     numbers: list[Any] = []
     for _, value in found:
         if isinstance(value, PerTrajectory):
