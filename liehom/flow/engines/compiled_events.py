@@ -506,8 +506,6 @@ class PlannedEvents:
         starts, ends = g[..., :-1], g[..., 1:]
         same = starts * ends > 0
         turning = same & (starts * back[..., 1:] > 0) & (starts * ahead[..., :-1] < 0)
-        if np.logical_and.reduce(same > turning, axis=None):
-            return log
         t, y, sizes = path[:, n].T, path[:, :n].transpose(2, 1, 0), path[1:, n + 1].T
         for i in range(events.count):
             start, end, turns = starts[i], ends[i], turning[i]

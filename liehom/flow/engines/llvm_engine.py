@@ -37,17 +37,14 @@ from liehom.flow.engines.lanes import (
 from liehom.flow.engines.lattice import LatticeStep, lattice_step, solved_on_lattice
 from liehom.flow.engines.plan import (
     KINDS,
-    Numbers,
     Plan,
     floats,
     form_of,
     frame_key,
-    known_numbers,
     note_ranks,
     numbers_of,
     ranked,
     serves_all_points,
-    with_form,
 )
 from liehom.flow.engines.traced_step import arg_values, args_form, traced_step
 from liehom.flow.run.check import is_unbounded
@@ -118,9 +115,9 @@ class LlvmEngine:
                 others = {name: x for name, x in options.items() if name not in ("t_eval", "events")}
                 events = options.get("events")
             try:
-                numbers = known_numbers(**others)
-            except TypeError:  # sizes in an array are not hashable
                 numbers = numbers_of(**others)
+            except TypeError:  # sizes in an array are not hashable
+                numbers = numbers_of.__wrapped__(**others)
             found = None if args is None else leaves(args)
             plan = None if numbers is None else self._plans.get(form_of(points.shape, numbers, times, events, found))
             if numbers is None or plan is None or self._watch.changed():
@@ -132,16 +129,11 @@ class LlvmEngine:
     def _keep_plan(self, problem: Problem, run: CompiledRun, solution: Solution) -> None:
         """Keep the plan of a call, if the trace serves all points, and nothing happens between its steps."""
         o, (_, key, graph) = problem.options, run.groups[0]
-        if len(run.groups) > 1 or graph.guard is None or solution.status != END:
+        if len(run.groups) > 1 or graph.guard is None or solution.status != END or o.checkpoint or o.progress:
             return
-        if o.checkpoint is not None or o.progress:
-            return
-        dt = None if o.dt is None else float(np.max(o.dt)) if (o.dt == np.max(o.dt)).all() else o.dt
-        start = np.asarray(problem.start)
-        numbers = with_form(Numbers(dt=dt, looks=o.looks, dense=o.dense_output))
-        if numbers is None:
-            return
-        form = form_of(start.shape, numbers, o.t_eval, o.events, None if problem.args is None else leaves(problem.args))
+        start, args = np.asarray(problem.start), problem.args
+        numbers: Any = numbers_of.__wrapped__(dt=o.dt, looks=o.looks, dense_output=o.dense_output)
+        form = form_of(start.shape, numbers, o.t_eval, o.events, None if args is None else leaves(args))
         dimension = int(np.max(problem.orbit_dimension))
         known = self._plans.get(form)
         if (known is not None and known.is_current) or not serves_all_points(problem, run.step, dimension):

@@ -71,38 +71,31 @@ BOUNDS = frozenset(["dt", "rtol", "atol", "max_step", "min_step", "first_step", 
 ABSENT = frozenset(["dt", "first_step", "looks", "checkpoint"])
 
 
+@lru_cache(maxsize=256, typed=True)
 def numbers_of(**options: object) -> Numbers | None:
     """The numbers of a call, None if it needs a closer look."""
     numbers: dict[str, Any] = {}
     for name, value in options.items():
         if name in BOUNDS and type(value) in KINDS:
-            numbers[name] = float(value)
+            numbers[name] = float(value)  # type: ignore[arg-type]
         elif name == "dt" and value is not None:
-            numbers[name] = sizes = floats("dt", value)
+            sizes = floats("dt", value)
             if sizes is None or not sizes.size:
                 return None
-            numbers[name] = float(sizes.flat[0]) if bool((sizes == sizes.flat[0]).all()) else sizes
-            numbers["shape"] = sizes.shape
+            numbers["shape"], dt = sizes.shape, float(sizes.flat[0])
+            numbers[name] = dt if bool((sizes == dt).all()) else sizes
         elif name == "looks" and type(value) is int and value >= 0:
             numbers[name] = value
         elif name == "dense_output" and type(value) is bool:
             numbers["dense"] = value
         elif (value is not None or name not in ABSENT) and (name != "progress" or value is not False):
             return None
-    return with_form(Numbers(**numbers))
-
-
-known_numbers = lru_cache(maxsize=256, typed=True)(numbers_of)
-
-
-def with_form(x: Numbers) -> Numbers | None:
-    """Numbers with what is the same in all calls of a form, None if they are not right."""
-    dt, rtol, atol, most, least, first, steps, looks, *_ = x
-    good = rtol >= 0 and atol >= 0 and rtol + atol > 0 and 0 <= least <= most and most > 0 and steps >= 1
-    if not good or (first is not None and first <= 0) or (dt is not None and not 0 < np.min(dt) <= np.max(dt) < inf):
+    x = Numbers(**numbers)
+    good = x.rtol >= 0 and x.atol >= 0 and x.rtol + x.atol > 0 and 0 <= x.min_step <= x.max_step and x.max_step > 0
+    good = good and x.max_steps >= 1 and (x.first_step is None or x.first_step > 0)
+    if not good or (x.dt is not None and not 0 < np.min(x.dt) <= np.max(x.dt) < inf):
         return None
-    kind: Hashable = type(dt) if dt is not None else looks and 1
-    return x._replace(form=(kind, x.dense))
+    return x._replace(form=(type(x.dt) if x.dt is not None else x.looks and 1, x.dense))
 
 
 def floats(what: str, given: object) -> Array | None:
@@ -247,7 +240,7 @@ class Plan:
         self.is_judged, self.rows, self.lock = problem.options.dt is not None, ROOM, threading.Lock()
         # rows of a path up to which there is one piece
         row = max(8 * (self.n + 2) / PATH_BYTES_PER_CALL, work / OPERATIONS_PER_CALL, 1 / LANE_STEPS_FOR_THREADS)
-        self.short = int(1 / (row * self.lanes)) if small else 0
+        self.short = int(1 / (row * self.lanes))
 
     @property
     def is_current(self) -> bool:
@@ -282,7 +275,7 @@ class Plan:
     def _solution(self, task: Task, args: Pytree) -> Solution | None:
         _, points, times, span, values, total, y, keeps = task
         rows = total if self.lockstep or not keeps else self.rows
-        if rows <= self.short:
+        if self.memory is not None and rows <= self.short:
             piece = self._made(task, slice(0, self.lanes), self.memory)
             if piece is None:
                 return None
@@ -294,10 +287,8 @@ class Plan:
             pieces = [piece for piece in made if piece is not None]
             if not pieces or len(pieces) < len(made):
                 return None
-            path, numbers = (
-                _joined(pieces, self.lanes) if keeps else None,
-                np.concatenate([x[2] for x in pieces], axis=1),
-            )
+            path = _joined(pieces, self.lanes) if keeps else None
+            numbers = np.concatenate([x[2] for x in pieces], axis=1)
         if not self.is_judged and numbers[self.count].max() >= MIN_STEPS:
             self.is_judged = True  # an ordinary call says whether the field is stiff
             return None
