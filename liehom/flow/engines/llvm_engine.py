@@ -36,6 +36,7 @@ from liehom.flow.engines.lanes import (
 )
 from liehom.flow.engines.lattice import LatticeStep, lattice_step, solved_on_lattice
 from liehom.flow.engines.plan import (
+    CHUNK,
     KINDS,
     Plan,
     floats,
@@ -202,7 +203,7 @@ class CompiledRun:
             )
         self.store, self.most = store, most  # steps of a call
         self.search = None if run.stops.events is None else EventSearch(run)
-        self.start = run.start.reshape(-1, run.start.shape[-1]).astype(np.float64)
+        self.start = run.start.reshape(-1, run.start.shape[-1])
         dimensions = np.broadcast_to(np.asarray(run.psi.orbit_dimension), run.shape).reshape(-1)
         self.groups: list[tuple[IntegerArray, Hashable, StepGraph]] = []
         for d in np.unique(dimensions):
@@ -236,8 +237,8 @@ class CompiledRun:
             if graph.reached is None:
                 parts = [here[back.taken[here] == taken] for taken in np.unique(back.taken[here])]
             else:
-                parts = [here] if len(here) else []
-            for some in parts:
+                parts = [here]
+            for some in (part[i : i + CHUNK] for part in parts for i in range(0, len(part), CHUNK)):
                 done = self._stepped(run, (key, graph), some, back, steps)
                 back.take(some, self._looked_into(run, (key, graph), some, back, done))
         # calls of psi are counted for the trajectory with the most of them
