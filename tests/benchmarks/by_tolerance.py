@@ -1,11 +1,12 @@
 """The default step by tolerance alone beside other programs: what a call costs at an error, as multiples of ours.
 
-    python -m tests.benchmarks.by_tolerance [--only NAME ...] [--counts 1 10 1000 10000] [--render]
+    python -m tests.benchmarks.by_tolerance [--only NAME ...] [--again] [--render]
 
 Each program gets its tolerance and nothing else, as its objects are made once and called again; methods with fixed
 steps get their best step. Errors are those of trajectories, and costs are processor time of whole calls, read off the
 curve over the swept settings. The second number of a cell compares with the best of our steps that is set by hand. The
-figures are kept in docs/_static/by_tolerance.json, and their tables are in docs/performance.md.
+figures are kept in docs/_static/by_tolerance.json, and their tables are in docs/performance.md. A run that was stopped
+goes on with the problems that have no figures yet.
 """
 
 import argparse
@@ -60,7 +61,7 @@ def runs(solver: Solver, count: int) -> bool:
     return (10_000 if count == 1000 else count) in solver.counts
 
 
-def measured(problem: Problem, counts: tuple[int, ...]) -> dict[str, Any]:
+def measured(problem: Problem) -> dict[str, Any]:
     """For each program its errors, and its costs for each size of ensembles."""
     rows: list[dict[str, Any]] = []
     begin = time.process_time()
@@ -69,7 +70,7 @@ def measured(problem: Problem, counts: tuple[int, ...]) -> dict[str, Any]:
             if not solver.installed or not solver.fits(problem):
                 continue
             points = accuracy(problem, solver)
-            known = {str(n): cost(problem, solver, n, points) for n in counts if points and runs(solver, n)}
+            known = {str(n): cost(problem, solver, n, points) for n in COUNTS if points and runs(solver, n)}
             rows.append({"kind": kind, "name": solver.name, "points": points, "costs": known})
             print(f"{problem.name}: {solver.name}, {time.process_time() - begin:.0f} s", flush=True)
     return {"title": problem.title, "rows": rows}
@@ -95,7 +96,7 @@ def tables(data: dict[str, Any]) -> list[str]:
     for count in COUNTS:
         head = [f"{count} trajector{'y' if count == 1 else 'ies'}", *(f"{x:.0e}" for x in TARGETS), "best peer at 1e-6"]
         lines += ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
-        for name, entry in data["problems"].items():
+        for name, entry in ((name, data["problems"][name]) for name in made if name in data["problems"]):
             cells = [name]
             for target, aim in zip(TARGETS, AIMS[name][count], strict=True):
                 peer, _ = least(made[name], entry["rows"], "peer", count, target)
@@ -111,7 +112,7 @@ def tables(data: dict[str, Any]) -> list[str]:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--only", nargs="*")
-    parser.add_argument("--counts", type=int, nargs="*", choices=COUNTS, default=COUNTS)
+    parser.add_argument("--again", action="store_true", help="measure problems that have figures, too")
     parser.add_argument("--render", action="store_true", help="measure nothing")
     options = parser.parse_args()
     data = json.loads(DATA.read_text(encoding="utf-8")) if DATA.exists() else {"problems": {}}
@@ -121,8 +122,9 @@ def main() -> None:
         warnings.simplefilter("ignore")
         data["conditions"] = conditions()
         for make in PROBLEMS:
-            if options.only is None or make().name in options.only:
-                data["problems"][make().name] = measured(make(), tuple(options.counts))
+            name = make().name
+            if (options.only is None or name in options.only) and (options.again or name not in data["problems"]):
+                data["problems"][name] = measured(make())
                 DATA.write_text(json.dumps(data, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
     found = "\n".join(tables(data))
     print(found)

@@ -86,6 +86,8 @@ def _shaped(problem: Problem, starts: Any) -> Any:
 
 def _flat(problem: Problem, y: Any, samples: int) -> Any:
     """(..., *shape, samples) to (samples, L, n)."""
+    if np.ndim(y) == 2:
+        return y.T[:, None]
     return np.moveaxis(np.asarray(y), -1, 0).reshape(samples, -1, problem.size)
 
 

@@ -265,7 +265,8 @@ class Parts:
 
     def changed(self) -> bool:
         """Whether the code of a function, or what it names, is another one than before."""
-        return any(_has_changed(*row) for row in self._rows)
+        rows = [row for row in self._rows if row[2] is not None or row[0]() is not row[1]]
+        return any(_has_changed(*row) for row in rows) if rows else False
 
 
 @final
@@ -292,10 +293,7 @@ class Watch(Parts):
 
     def changed(self) -> bool:
         """Whether the code of psi, what it names, or its value at the initial point is another one than before."""
-        return super().changed() or self._value_changed()
-
-    def _value_changed(self) -> bool:
-        return self._known is not None and self._value() not in (self._known, None)
+        return super().changed() or (self._known is not None and self._value() not in (self._known, None))
 
     def _value(self) -> bytes | None:
         try:

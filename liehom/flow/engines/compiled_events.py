@@ -24,7 +24,7 @@ from liehom.flow.steps.step import Generator, Step, length
 from liehom.flow.tracing.array import Traced
 from liehom.flow.tracing.graph import LaneConstant, RunConstant, Tape, TrajectoryConstant
 from liehom.flow.tracing.loop import StepGraph
-from liehom.flow.tracing.machine import PLACES, Kernel, lanes_per_register
+from liehom.flow.tracing.machine import PLACES, Kernel, lanes_per_register, padded
 
 # Event functions on any number of points of a run, also those that take only what an eager run gives them. An event
 # function is called with all points at once if that gives, at some points, what it gives for them in the form of the
@@ -365,29 +365,35 @@ class PointCode:
         if self.kernel.lane_constants:
             raise TraceError("numbers of a trajectory are not compiled for events")
         self.constants: Array = np.zeros(max(1, len(self.kernel.run_constants)))
-        self.memory: Memory | None = None
-        self.lanes = 0
+        self.alive: int = self.kernel.names.index("alive")
+        self._with_room(1)
 
-    def __call__(self, given: Sequence[Array], values: Mapping[str, float], start: Array | None = None) -> Array:
+    def _with_room(self, lanes: int) -> None:
+        """Memory for some lanes."""
+        self.lanes: int = padded(lanes, self.kernel.width)
+        self.memory = memory = Memory(self.kernel, self.lanes, self.constants)
+        memory.integers[PLACES["end"]] = memory.integers[PLACES["total"]] = 1
+        memory.floats[PLACES["step_size"]] = 1.0
+        memory.room("stops", 2)[:] = 1.0
+
+    def __call__(
+        self, given: Array | Sequence[Array], values: Mapping[str, float], start: Array | None = None
+    ) -> Array:  # fmt: skip
         """Numbers (k, L) from others, each (L,), constants of the run, and initial points (N, L); NaN for none."""
-        lanes = len(given[0])
-        if self.memory is None or self.lanes != lanes:
-            self.memory, self.lanes = Memory(self.kernel, lanes, self.constants), lanes
-            fields = self.memory.integers
-            fields[PLACES["end"]], fields[PLACES["total"]] = 1, 1
-            self.memory.floats[PLACES["step_size"]] = 1.0
-            self.memory.room("stops", 2)[:] = 1.0
-            self.memory.room("out", 1, *self.memory.state.shape)
-        state, memory = self.memory.state, self.memory
-        state[:] = memory.first
-        state[: len(given), :lanes] = given
-        state[: len(given), lanes:] = state[: len(given), :1]
+        lanes, rows, width = len(given[0]), len(given), self.kernel.width
+        if self.lanes < lanes:
+            self._with_room(2 * lanes)
+        memory, state, filled = self.memory, self.memory.state, padded(lanes, width)
+        memory.block[:] = memory.first
+        state[:rows, :lanes] = given
+        state[:rows, lanes:filled] = state[:rows, :1]
         if start is not None:
-            memory.start[: len(start), :lanes], memory.start[: len(start), lanes:] = start, start[:, :1]
-        self.constants[: len(self.kernel.run_constants)] = [values.get(x, 0.0) for x in self.kernel.run_constants]
+            memory.start[: len(start), :lanes], memory.start[: len(start), lanes:filled] = start, start[:, :1]
+        for i, name in enumerate(self.kernel.run_constants):
+            self.constants[i] = values.get(name, 0.0)
+        memory.integers[PLACES["last"]] = filled // width
         self.kernel.run(memory.address)
-        alive = state[self.kernel.names.index("alive"), :lanes] > 0
-        return np.where(alive, state[: self.count, :lanes], np.nan)
+        return np.where(state[self.alive, :lanes] > 0, state[: self.count, :lanes], np.nan)
 
 
 def _of_coordinates(n: int, function: TrajectoryConstant) -> TrajectoryConstant:
@@ -399,12 +405,14 @@ def events_key(functions: object) -> Hashable:
     """A key that event functions share if they are made at one place from the same values."""
     if isinstance(functions, list | tuple):
         return tuple(map(events_key, functions))
-    marks = tuple(repr(getattr(functions, name, None)) for name in ("direction", "terminal"))
+    marks = repr(getattr(functions, "direction", None)), repr(getattr(functions, "terminal", None))
     if isinstance(functions, FunctionType):
-        with suppress(ValueError):  # a cell that is not assigned yet
+        try:
             cells = [cell.cell_contents for cell in functions.__closure__ or ()]
             inner = [*cells, *(functions.__defaults__ or ()), *(functions.__kwdefaults__ or {}).values()]
-            return functions.__code__, id(functions.__globals__), tuple(map(id, inner)), *marks
+            return functions.__code__, id(functions.__globals__), *map(id, inner), *marks
+        except ValueError:  # a cell that is not assigned yet
+            pass
     return id(functions), *marks
 
 
@@ -484,20 +492,22 @@ class PlannedEvents:
             np.allclose(made[: self.events.count], wanted, rtol=RTOL, atol=RTOL * np.abs(wanted).max(initial=0))
         )
 
-    def __call__(
-        self, path: tuple[Array, Array, Array], values: Mapping[str, Any], span: tuple[float, float]
-    ) -> EventLog | None:
-        """The events on paths: times (L, j + 1), points (L, N, j + 1) and sizes (L, j). None if one may end a run."""
-        (t, y, sizes), events, n = path, self.events, self.n
-        lanes, k = t.shape
+    def __call__(self, path: Array, values: Mapping[str, Any], span: tuple[float, float]) -> EventLog | None:
+        """The events on paths (j + 1, N + 2, L) of points, times and sizes. None if one may end a run."""
+        events, n = self.events, self.n
+        k, _, lanes = path.shape
         values = {**values, "length": abs(span[1] - span[0])}
-        made = self.at_points([*y.transpose(1, 0, 2).reshape(n, -1), t.reshape(-1)], values)
+        made = self.at_points(path[:, : n + 1].transpose(1, 2, 0).reshape(n + 1, -1), values)
+        log = EventLog(events.count, np.shape(self.problem.start)[:-1], n)
+        if all((np.minimum.reduce(made, axis=1) * np.maximum.reduce(made, axis=1) > 0).tolist()):
+            return log  # no value and no slope changes its sign
         g, ahead, back = made.reshape(3, events.count, lanes, k)
         rows: list[tuple[int, int, float, int, Any, Array, bool]] = []
         starts, ends = g[..., :-1], g[..., 1:]
         same = starts * ends > 0
         turning = same & (starts * back[..., 1:] > 0) & (starts * ahead[..., :-1] < 0)
-        for i in range(events.count) if not same.all() or turning.any() else ():
+        t, y, sizes = path[:, n].T, path[:, :n].transpose(2, 1, 0), path[1:, n + 1].T
+        for i in range(events.count):
             start, end, turns = starts[i], ends[i], turning[i]
             for lane in np.flatnonzero(events.left(i, start[:, 0], end[:, 0])).tolist():
                 rows.append((lane, 0, 0.0, i, t[lane, 0], y[lane, :, 0].copy(), False))
@@ -518,7 +528,6 @@ class PlannedEvents:
                     (int(b[p]), int(j[p]), abs(float(s[p])), i, time[p], np.array([x[p] for x in point]), True)
                     for p in np.flatnonzero(here)
                 ]
-        log = EventLog(events.count, np.shape(self.problem.start)[:-1], n)
         log.rows = [(i, b, time, point) for b, _, _, i, time, point, _ in sorted(rows, key=lambda row: row[:4])]
         counts = np.zeros((events.count, lanes))
         for b, _, _, i, _, _, counted in rows:

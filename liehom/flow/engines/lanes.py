@@ -153,17 +153,21 @@ class LaneSteps(NamedTuple):
 
 @final
 class Memory:
-    """Memory of a kernel for some lanes, and its argument as integers and as floats."""
+    """Memory of a kernel for some lanes: a block of state and start, and the argument as integers and as floats."""
 
     def __init__(self, kernel: Kernel, lanes: int, constants: Array) -> None:
-        self.first: Array = kernel.packed(lanes, {"alive": 1.0, **lowest_numbers(kernel.graph)})
-        self.state: Array = self.first.copy()
-        self.start: Array = np.empty((kernel.graph.size, self.first.shape[1]))
-        self.rows: Array = np.ones((max(1, len(kernel.lane_constants)), self.first.shape[1]))
+        first = kernel.packed(lanes, {"alive": 1.0, **lowest_numbers(kernel.graph)})
+        self.first, self.block = np.array([first, first]), np.array([first, first])
+        self.state, self.start = self.block[0], self.block[1, : kernel.graph.size]
+        self.cells = memoryview(self.state.reshape(-1))
+        self.points: Array = self.block[:, : kernel.graph.size, :lanes].transpose(0, 2, 1)
+        self.rows: Array = np.ones((max(1, len(kernel.lane_constants)), self.state.shape[1]))
+        argument = kernel.argument(self.state, start=self.start, rows=self.rows, constants=constants)
+        self.integers, self.floats = memoryview(argument), memoryview(argument.view(np.float64))
+        self.address: int = argument.ctypes.data
         self.arrays: dict[str, Array] = dict.fromkeys(["stops", "out", "path"], np.zeros(0))
-        self.integers: IntegerArray = kernel.argument(self.state, start=self.start, rows=self.rows, constants=constants)
-        self.floats: Array = self.integers.view(np.float64)
-        self.address: int = self.integers.ctypes.data
+        self.room("stops", 2)
+        self.room("out", 2, kernel.graph.size, self.state.shape[1])
 
     def room(self, name: str, rows: int, *shape: int) -> Array:
         """The array of a name, with at least as many rows."""
@@ -171,6 +175,14 @@ class Memory:
         if len(array) < rows:
             array = self.arrays[name] = np.empty((rows, *shape))
             self.integers[PLACES[name]] = array.ctypes.data
+        return array
+
+    def path(self, steps: int, size: int) -> Array:
+        """The array of the path, with a row for the initial points before those of the steps."""
+        array = self.arrays["path"]
+        if len(array) <= steps:
+            array = self.room("path", steps + 1, size, self.state.shape[1])
+            self.integers[PLACES["path"]] += array[0].nbytes
         return array
 
 

@@ -13,6 +13,7 @@ from typing import Any, final
 import numpy as np
 
 from liehom.base.errors import InputError
+from liehom.base.pytrees import leaves
 from liehom.base.typing import Array, IntegerArray, Pytree
 from liehom.flow.action.fingerprint import Watch
 from liehom.flow.engines.compiled_events import EventSearch, planned_events
@@ -34,7 +35,18 @@ from liehom.flow.engines.lanes import (
     with_guard,
 )
 from liehom.flow.engines.lattice import LatticeStep, lattice_step, solved_on_lattice
-from liehom.flow.engines.plan import Call, Plan, call_of, form_of, frame_key, note_ranks, ranked, serves_all_points
+from liehom.flow.engines.plan import (
+    CHUNK,
+    KINDS,
+    Plan,
+    floats,
+    form_of,
+    frame_key,
+    note_ranks,
+    numbers_of,
+    ranked,
+    serves_all_points,
+)
 from liehom.flow.engines.traced_step import arg_values, args_form, traced_step
 from liehom.flow.run.check import is_unbounded
 from liehom.flow.run.options import END
@@ -93,25 +105,36 @@ class LlvmEngine:
         if not self._plans or self._watch is None:
             return None
         try:
-            call = call_of(t_span, y0, options)
-            plan = None if call is None else self._plans.get(form_of(call, self._watch.field, args))
-            if call is None or plan is None or self._watch.changed():
+            first, last = t_span  # type: ignore[misc]
+            if type(first) not in KINDS or type(last) not in KINDS:  # type: ignore[has-type]
                 return None
-            return plan(call, args)
-        except (TypeError, ValueError, OverflowError):  # not numbers, or not hashable
+            points, times = floats("the start", y0), options.get("t_eval")
+            if points is None or (times is not None and (times := floats("t_eval", times)) is None):
+                return None
+            others, events = options, None
+            if times is not None or "events" in options or "t_eval" in options:
+                others = {name: x for name, x in options.items() if name not in ("t_eval", "events")}
+                events = options.get("events")
+            try:
+                numbers = numbers_of(**others)
+            except TypeError:  # sizes in an array are not hashable
+                numbers = numbers_of.__wrapped__(**others)
+            found = None if args is None else leaves(args)
+            plan = None if numbers is None else self._plans.get(form_of(points.shape, numbers, times, events, found))
+            if numbers is None or plan is None or self._watch.changed():
+                return None
+            return plan(numbers, points, float(first), float(last), times, args, found)  # type: ignore[has-type]
+        except (TypeError, ValueError, OverflowError):  # not numbers
             return None
 
     def _keep_plan(self, problem: Problem, run: CompiledRun, solution: Solution) -> None:
         """Keep the plan of a call, if the trace serves all points, and nothing happens between its steps."""
         o, (_, key, graph) = problem.options, run.groups[0]
-        if len(run.groups) > 1 or graph.guard is None or solution.status != END:
+        if len(run.groups) > 1 or graph.guard is None or solution.status != END or o.checkpoint or o.progress:
             return
-        if o.checkpoint is not None or o.progress:
-            return
-        dt = None if o.dt is None else float(np.max(o.dt)) if (o.dt == np.max(o.dt)).all() else o.dt
-        start = np.asarray(problem.start)
-        call = Call(start, 0.0, 1.0, dt, o.t_eval, o.dense_output, looks=o.looks, events=o.events)
-        form = form_of(call, problem.field, problem.args)
+        start, args = np.asarray(problem.start), problem.args
+        numbers: Any = numbers_of.__wrapped__(dt=o.dt, looks=o.looks, dense_output=o.dense_output)
+        form = form_of(start.shape, numbers, o.t_eval, o.events, None if args is None else leaves(args))
         dimension = int(np.max(problem.orbit_dimension))
         known = self._plans.get(form)
         if (known is not None and known.is_current) or not serves_all_points(problem, run.step, dimension):
@@ -179,7 +202,7 @@ class CompiledRun:
             raise InputError(f"engine={name!r} computes in float64, the start is of type {kind}: take engine='numpy'")
         self.store, self.most = store, most  # steps of a call
         self.search = None if run.stops.events is None else EventSearch(run)
-        self.start = run.start.reshape(-1, run.start.shape[-1]).astype(np.float64)
+        self.start = run.start.reshape(-1, run.start.shape[-1])
         dimensions = np.broadcast_to(np.asarray(run.psi.orbit_dimension), run.shape).reshape(-1)
         self.groups: list[tuple[IntegerArray, Hashable, StepGraph]] = []
         for d in np.unique(dimensions):
@@ -213,8 +236,8 @@ class CompiledRun:
             if graph.reached is None:
                 parts = [here[back.taken[here] == taken] for taken in np.unique(back.taken[here])]
             else:
-                parts = [here] if len(here) else []
-            for some in parts:
+                parts = [here]
+            for some in (part[i : i + CHUNK] for part in parts for i in range(0, len(part), CHUNK)):
                 done = self._stepped(run, (key, graph), some, back, steps)
                 back.take(some, self._looked_into(run, (key, graph), some, back, done))
         # calls of psi are counted for the trajectory with the most of them

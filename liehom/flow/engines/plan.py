@@ -6,17 +6,18 @@ import contextlib
 import threading
 from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import replace
+from functools import lru_cache
 from itertools import pairwise
 from math import ceil, inf
-from typing import Any, NamedTuple, final
+from typing import Any, NamedTuple, TypeAlias, final
 
 import numpy as np
 
 from liehom.base.errors import ConvergenceError, LiehomError
 from liehom.base.objects import refuse_masked
-from liehom.base.pytrees import check_numbers
+from liehom.base.pytrees import Leaf, PerTrajectory
 from liehom.base.typing import Array, IntegerArray, Pytree
-from liehom.flow.action.field import GeneratorField, check_point
+from liehom.flow.action.field import check_point
 from liehom.flow.action.space import Action
 from liehom.flow.engines.arguments import with_tight_frame
 from liehom.flow.engines.compiled_events import PlannedEvents, events_key
@@ -31,7 +32,7 @@ from liehom.flow.engines.lanes import (
     in_threads,
     records_of,
 )
-from liehom.flow.engines.traced_step import arg_values, args_form, args_of_lanes
+from liehom.flow.engines.traced_step import arg_values, args_of_lanes, numbers_in
 from liehom.flow.methods.stability import MIN_STEPS
 from liehom.flow.run.check import gap_of
 from liehom.flow.run.control import SLACK
@@ -47,17 +48,13 @@ from liehom.flow.tracing.machine import PLACES, Kernel, padded
 
 KINDS = frozenset([float, int, np.float64, np.float32, np.int64, np.int32])
 EPS = float(np.finfo(np.float64).eps)
+FLOAT = np.dtype(np.float64)
 
 
-class Call(NamedTuple):
-    """The numbers of a call."""
+class Numbers(NamedTuple):
+    """The numbers among the options of a call."""
 
-    points: Array  # (..., N)
-    begin: float
-    end: float
     dt: float | Array | None = None  # an array of different sizes (...,)
-    times: Array | None = None
-    dense: bool = False
     rtol: float = RTOL
     atol: float = ATOL
     max_step: float = inf
@@ -65,74 +62,54 @@ class Call(NamedTuple):
     first_step: float | None = None
     max_steps: float = inf
     looks: int | None = None
-    events: Any = None
+    dense: bool = False
+    shape: tuple[int, ...] = ()  # of dt
+    form: Hashable = None  # which calls of a form have in common
 
 
-ABSENT = frozenset(["dt", "t_eval", "events", "checkpoint", "first_step"])
-NUMBERS = frozenset(["rtol", "atol", "max_step", "min_step", "first_step", "max_steps"])
+BOUNDS = frozenset(["dt", "rtol", "atol", "max_step", "min_step", "first_step", "max_steps"])
+ABSENT = frozenset(["dt", "first_step", "looks", "checkpoint"])
 
 
-def call_of(t_span: object, y0: object, options: Mapping[str, Any]) -> Call | None:
+@lru_cache(maxsize=256, typed=True)
+def numbers_of(**options: object) -> Numbers | None:
     """The numbers of a call, None if it needs a closer look."""
-    first, last = t_span  # type: ignore[misc]
-    if type(first) not in KINDS or type(last) not in KINDS:  # type: ignore[has-type]
-        return None
-    begin, end = float(first), float(last)  # type: ignore[has-type]
-    points = _floats("the start", y0)
-    if points is None or not 0.0 < abs(end - begin) < inf:
-        return None
     numbers: dict[str, Any] = {}
     for name, value in options.items():
-        if name in NUMBERS and type(value) in KINDS:
-            numbers[name] = float(value)
-        elif name == "dt" and type(value) in KINDS:
-            numbers[name] = dt = float(value)
-            if not 8 * EPS * max(abs(begin), abs(end)) <= dt < inf:
-                return None
+        if name in BOUNDS and type(value) in KINDS:
+            numbers[name] = float(value)  # type: ignore[arg-type]
         elif name == "dt" and value is not None:
-            numbers[name] = sizes = _sizes(value, points.shape[:-1])
-            if sizes is None or not 8 * EPS * max(abs(begin), abs(end)) <= np.min(sizes) <= np.max(sizes) < inf:
+            sizes = floats("dt", value)
+            if sizes is None or not sizes.size:
                 return None
-        elif name == "t_eval" and value is not None:
-            numbers["times"] = times = _floats("t_eval", value)
-            if times is None or times.ndim != 1 or not _are_in_order(times, begin, end):
-                return None
-        elif name == "looks" and (value is None or (type(value) is int and value >= 0)):
+            numbers["shape"], dt = sizes.shape, float(sizes.flat[0])
+            numbers[name] = dt if bool((sizes == dt).all()) else sizes
+        elif name == "looks" and type(value) is int and value >= 0:
             numbers[name] = value
         elif name == "dense_output" and type(value) is bool:
             numbers["dense"] = value
-        elif name == "events" and value is not None:
-            numbers[name] = value
         elif (value is not None or name not in ABSENT) and (name != "progress" or value is not False):
             return None
-    call = Call(points, begin, end, **numbers)
-    if not NUMBERS.isdisjoint(numbers):
-        rtol, atol, most, least, first, steps = call[6:12]
-        good = rtol >= 0 and atol >= 0 and rtol + atol > 0 and 0 <= least <= most and most > 0 and steps >= 1
-        return call if good and (first is None or first > 0) else None
-    return call
+    x = Numbers(**numbers)
+    good = x.rtol >= 0 and x.atol >= 0 and x.rtol + x.atol > 0 and 0 <= x.min_step <= x.max_step and x.max_step > 0
+    good = good and x.max_steps >= 1 and (x.first_step is None or x.first_step > 0)
+    if not good or (x.dt is not None and not 0 < np.min(x.dt) <= np.max(x.dt) < inf):
+        return None
+    return x._replace(form=(type(x.dt) if x.dt is not None else x.looks and 1, x.dense))
 
 
-def _floats(what: str, given: object) -> Array | None:
+def floats(what: str, given: object) -> Array | None:
     """An array of floats from an array, or from lists, of floats or integers."""
     value: Any = given
     if type(given) is list or type(given) is tuple:
-        refuse_masked(what, given)
+        if not KINDS.issuperset(map(type, given)):
+            refuse_masked(what, given)
         value = np.array(given)
     elif type(given) is not np.ndarray:
         return None
-    if value.dtype == np.float64:
+    if value.dtype is FLOAT or value.dtype == FLOAT:
         return value
     return value.astype(np.float64) if value.dtype.kind in "iu" else None
-
-
-def _sizes(value: object, shape: tuple[int, ...]) -> float | Array | None:
-    """The step sizes of trajectories, or one size if they agree."""
-    sizes = _floats("dt", value)
-    if sizes is None or not sizes.size or sizes.shape not in ((), shape):
-        return None
-    largest = float(sizes.max())
-    return largest if float(sizes.min()) == largest else sizes
 
 
 def _are_in_order(times: Array, begin: float, end: float) -> bool:
@@ -148,13 +125,18 @@ def _are_in_order(times: Array, begin: float, end: float) -> bool:
     return bool((steps > 0).all() if end > begin else (steps < 0).all())
 
 
-def form_of(call: Call, field: GeneratorField, args: Pytree) -> Hashable:
-    """The form of a call: calls of one form have one plan."""
-    gap = None if call.dt is not None else gap_of(call.looks, 1.0, field)
-    form = None if args is None else args_form(args, call.points.ndim - 1)
-    kind = 0 if call.dt is None else 1 if type(call.dt) is float else 2
-    events = None if call.events is None else events_key(call.events)
-    return call.points.shape, kind, call.times is None, call.dense, gap if gap in (None, inf) else 1.0, form, events
+def form_of(
+    shape: tuple[int, ...], numbers: Numbers, t_eval: object, events: object, args: Sequence[Leaf] | None
+) -> Hashable:  # fmt: skip
+    """The form of a call, with the leaves of its args: calls of one form have one plan."""
+    form = None if args is None else tuple([_form_of_leaf(*leaf) for leaf in args])
+    return shape, numbers.form, t_eval is None, form, None if events is None else events_key(events)
+
+
+def _form_of_leaf(path: str, x: Any) -> Hashable:  # noqa: ANN401 - a leaf may be anything
+    """The place, the type and the shape of a leaf; a number is not of the type of anything that is refused."""
+    inner = x.value if isinstance(x, PerTrajectory) else x
+    return path, type(x), type(inner), getattr(inner, "dtype", None), getattr(inner, "shape", None)
 
 
 def serves_all_points(problem: Problem, step: Step, dimension: int) -> bool:
@@ -209,32 +191,22 @@ def ranked(count: int) -> IntegerArray:
 CHUNK = 16_384  # number of lanes, at most, that are copied in, run, and copied out at once
 SMALL = 64  # number of lanes up to which memory is kept from call to call
 ROOM = 64  # rows of the path, at first, of steps whose number is not known
-LAST_STOP, FIRST_STOP, ORIGIN, END_STEP, TOTAL, STEP_SIZE = (
-    PLACES[name] for name in ("last_stop", "first_stop", "origin", "end", "total", "step_size")
+LAST_STOP, FIRST_STOP, ORIGIN, BEGIN, END_STEP, TOTAL, STEP_SIZE = (
+    PLACES[name] for name in ("last_stop", "first_stop", "origin", "begin", "end", "total", "step_size")
 )
+OF_A_CALL = ("checks", "direction", "rest", "end", "rtol", "atol", "max_step", "tiny", "gap", "latest")
+"""The numbers of a call that a kernel may take, besides args."""
 TROUBLE = frozenset(["unkept", "failed", "near", "short", "conservation_short", "conservation_missed"])
 """Numbers of steps that are 0, or -inf, if the steps are as they should be."""
 
 
-class Piece(NamedTuple):
-    """The result of a kernel for some lanes: rows of their path, and numbers of their states."""
-
-    lanes: slice
-    path: Array | None  # (j, N + 2, L): points, times and signed sizes, without gaps
-    numbers: Array
+Piece: TypeAlias = tuple[slice, Array | None, Array]
+"""Lanes, the rows (j + 1, N + 2, L) of their path, which are points, times and signed sizes, and numbers of states."""
 
 
-class Task(NamedTuple):
-    """The order that a call gives to a kernel."""
-
-    call: Call
-    points: Array  # (L, N)
-    values: Mapping[str, Any]  # the constants of the run, by name
-    direction: float
-    total: int  # number of steps in lockstep
-    starts: int  # number of output times at the begin
-    keeps: bool  # whether all steps are kept
-    y: Array | None  # (L, N, k): points at output times
+Task: TypeAlias = tuple[Numbers, Array, Array | None, tuple[float, float], Mapping[str, Any], int, Array | None, bool]
+"""Numbers of a call, points (L, N), output times, ends of the span, numbers of args and the direction by name, number
+of steps in lockstep, points (L, N, k) at output times, and whether all steps are kept."""
 
 
 @final
@@ -249,6 +221,7 @@ class Plan:
         self.kernel, self.problem, self.step, self.work, self.prepared = kernel, problem, step, work, calls
         self.shape, self.n, self.lanes = shape[:-1], shape[-1], int(np.prod(shape[:-1], dtype=int))
         self.place = {name: i for i, name in enumerate(kernel.names)}
+        self.alive, self.taken, self.time, self.size = (self.place.get(x, 0) for x in ("alive", "count", "t", "h"))
         self.lockstep = graph.reached is None
         recorded = {f"e{i}": name for i, name in enumerate([*graph.largest, *graph.summed])}
         self.trouble = [self.place[e] for e, name in recorded.items() if name in TROUBLE]
@@ -256,91 +229,144 @@ class Plan:
         self.kept = [x for x in kernel.names if small or x in recorded or x in ("count", "tries")]
         self.kept_rows: Any = slice(None) if small else [self.place[name] for name in self.kept]
         self.count = self.kept.index("count")
-        self.ranked = ranked(self.lanes) if step.uses_isotropy else np.zeros(0, dtype=int)
-        self.given = [(name, i) for name, i in self.place.items() if name in ("t", "stop", "kept", "h")]
+        self.ranked = ranked(self.lanes) if step.uses_isotropy else None
         self.constants: Array = np.zeros(max(1, len(kernel.run_constants)))
+        self.slots = memoryview(self.constants)
+        self.slot = {name: i for i, name in enumerate(kernel.run_constants)}
+        self.own = [(i, OF_A_CALL.index(name)) for name, i in self.slot.items() if name in OF_A_CALL]
+        names = () if problem.args is None else arg_values(problem.args, len(self.shape))
+        self.names = [(name, self.slot.get(name)) for name in names]
         self.memory = Memory(kernel, self.lanes, self.constants) if small else None
         self.is_judged, self.rows, self.lock = problem.options.dt is not None, ROOM, threading.Lock()
+        # rows of a path up to which there is one piece
+        row = max(8 * (self.n + 2) / PATH_BYTES_PER_CALL, work / OPERATIONS_PER_CALL, 1 / LANE_STEPS_FOR_THREADS)
+        self.short = int(1 / (row * self.lanes))
 
     @property
     def is_current(self) -> bool:
         """Whether the event functions are those that were compiled."""
         return self.events is None or not self.events.parts.changed()
 
-    def __call__(self, call: Call, args: Pytree = None) -> Solution | None:
+    def __call__(
+        self, numbers: Numbers, points: Array, begin: float, end: float, times: Array | None,
+        args: Pytree, found: Sequence[Leaf] | None,
+    ) -> Solution | None:  # fmt: skip
         """The solution, or None if the call needs a closer look."""
-        if not self.lock.acquire(blocking=False):
+        length, rest, dt, total = abs(end - begin), 8 * EPS * max(abs(begin), abs(end)), numbers.dt, 0
+        if not 0.0 < length < inf or (dt is not None and rest > (dt if type(dt) is float else np.min(dt))):
+            return None
+        if (numbers.shape and numbers.shape != self.shape) or not (self.events is None or self.is_current):
+            return None
+        if self.lockstep:
+            total = max(ceil(length / dt - (SLACK + rest / dt)), 1)  # type: ignore[operator,arg-type]
+            if total >= numbers.max_steps:
+                return None
+        if (times is not None and not _are_in_order(times, begin, end)) or not self.lock.acquire(blocking=False):
             return None
         try:
-            return self._solution(call, args)
+            values = self._take(numbers, begin, end, rest, found)
+            points = points if len(self.shape) == 1 else points.reshape(self.lanes, self.n)
+            y = None if times is None else np.empty((self.lanes, self.n, len(times)))
+            keeps = y is None or numbers.dense or self.events is not None
+            return self._solution((numbers, points, times, (begin, end), values, total, y, keeps), args)
         finally:
             self.lock.release()
 
-    def _solution(self, call: Call, args: Pytree) -> Solution | None:
-        times, begin, end = call.times, call.begin, call.end
-        points, direction = call.points.reshape(self.lanes, self.n), 1.0 if end > begin else -1.0
-        rest, total = 8 * EPS * max(abs(begin), abs(end)), 0
-        if self.lockstep:
-            dt: Any = call.dt
-            total = max(ceil(abs(end - begin) / dt - (SLACK + rest / dt)), 1)
-            if total >= call.max_steps:
+    def _solution(self, task: Task, args: Pytree) -> Solution | None:
+        _, points, times, span, values, total, y, keeps = task
+        rows = total if self.lockstep or not keeps else self.rows
+        if self.memory is not None and rows <= self.short:
+            piece = self._made(task, slice(0, self.lanes), self.memory)
+            if piece is None:
                 return None
-        if not self.is_current:
-            return None
-        keeps = times is None or call.dense or self.events is not None
-        starts = int(times is not None and float(times[0]) == begin)
-        chunk = self._chunk(total if self.lockstep or not keeps else self.rows, keeps=keeps)
-        if chunk < 1:
-            return None
-        y = None if times is None else np.empty((self.lanes, self.n, len(times)))
-        if y is not None and starts:
-            y[:, :, 0] = points
-        task = Task(call, points, self._take(call, args, direction, rest), direction, total, starts, keeps, y)
-        if chunk >= self.lanes:
-            pieces = [self._made(task, slice(0, self.lanes))]
+            _, path, numbers = piece
         else:
-            cuts = pairwise([*range(0, self.lanes, chunk), self.lanes])
-            pieces = in_threads(lambda lanes: self._made(task, lanes), [slice(a, b) for a, b in cuts])
-        good = [piece for piece in pieces if piece is not None]
-        if len(good) < len(pieces):
-            return None
-        numbers = good[0].numbers if len(good) == 1 else np.concatenate([x.numbers for x in good], axis=1)
+            chunk = self._chunk(rows, keeps=keeps)
+            cuts = pairwise([*range(0, self.lanes, chunk), self.lanes] if chunk else [])
+            made = in_threads(lambda lanes: self._made(task, lanes), [slice(a, b) for a, b in cuts])
+            pieces = [piece for piece in made if piece is not None]
+            if not pieces or len(pieces) < len(made):
+                return None
+            path = _joined(pieces, self.lanes) if keeps else None
+            numbers = np.concatenate([x[2] for x in pieces], axis=1)
         if not self.is_judged and numbers[self.count].max() >= MIN_STEPS:
             self.is_judged = True  # an ordinary call says whether the field is stiff
             return None
-        path, log = _joined(good, points, begin) if keeps else None, None
-        if self.events is not None and path is not None:
-            log = self.events(path, task.values, (begin, end))
-            if log is None:
-                return None
         t: Any = times
         result: Any = y
-        if path is not None and y is None:
-            t, result, _ = path
-        t = t.copy() if times is not None else t[0] if not self.shape else t.reshape(*self.shape, t.shape[-1])
-        result = result[0] if not self.shape else result.reshape(*self.shape, self.n, result.shape[-1])
-        # what the other entries need is copied: points may change
-        first = points[self.ranked] if len(self.ranked) else points[:0]
-        start = np.array(points) if keeps and y is not None else None
-        return solution_of(t, result, END, lambda: self._others(call, args, numbers, path, (first, start), log))
-
-    def _made(self, task: Task, lanes: slice) -> Piece | None:
-        """Run the kernel for some lanes; None if one of them fails."""
-        points, y = task.points[lanes], task.y
-        count, memory = len(points), self.memory
-        if memory is None or count < self.lanes:  # pieces run in threads
-            memory = Memory(self.kernel, count, self.constants)
-        for row, number in zip(memory.rows, self.kernel.lane_constants, strict=False):
-            row[:count] = task.values[number.name][lanes] if isinstance(number, LaneConstant) else number(points)
-        parts = self._run(memory, task, points, lanes)
-        state = memory.state
-        if parts is None or any((state[i, 0] if count == 1 else state[i, :count].max()) > 0 for i in self.trouble):
+        n, shape, log = self.n, self.shape, None
+        if path is not None and self.events is not None and (log := self.events(path, values, span)) is None:
             return None
-        if y is not None and y.shape[2] > task.starts:
-            out = memory.arrays["out"]
-            y[lanes, :, task.starts :] = out[task.starts : y.shape[2], :, :count].transpose(2, 1, 0)
-        numbers = state[:, :count].copy() if self.memory is not None else state[self.kept_rows, :count]
-        return Piece(lanes, self._path(parts, count) if task.keeps else None, numbers)
+        if y is not None:
+            t, result = t.copy(), y if shape else y[0]
+        elif path is not None and shape:
+            t, result = path[:, n].T, path[:, :n].transpose(2, 1, 0)
+            t = t.reshape(*shape, -1)
+        elif path is not None:
+            t, result = path[:, n, 0], path[:, :n, 0].T
+        if len(shape) > 1:
+            result = result.reshape(*shape, *result.shape[1:])
+        # what the other entries need is copied: points may change
+        start = None if self.ranked is None else points.copy()
+        return solution_of(t, result, END, lambda: self._others(task, args, numbers, path, start, log))
+
+    def _made(self, task: Task, lanes: slice, memory: Memory | None = None) -> Piece | None:
+        """Run the kernel for some lanes from begin to end; None if one of them fails."""
+        numbers, points, times, (begin, end), values, total, y, keeps = task
+        if memory is None:  # pieces run in threads
+            points = points[lanes]
+            memory = Memory(self.kernel, len(points), self.constants)
+        count, n, state, integers, cells = len(points), self.n, memory.state, memory.integers, memory.cells
+        width, starts, last = state.shape[1], 0, 0
+        for row, number in zip(memory.rows, self.kernel.lane_constants, strict=False):
+            row[:count] = values[number.name][lanes] if isinstance(number, LaneConstant) else number(points)
+        memory.block[:] = memory.first
+        memory.points[:] = points
+        if times is not None:
+            starts, last = int(times[0] == begin), len(times) - int(times[-1] == end)
+            memory.room("out", last + 2, n, width)[:starts] = state[:n]
+            memory.room("stops", last + 2)[:last] = times[:last]
+        memory.arrays["stops"][last : last + 2] = end
+        integers[LAST_STOP], integers[FIRST_STOP], memory.floats[ORIGIN] = last, starts, begin
+        size: Any = numbers.dt
+        if size is None:
+            size = numbers.first_step or numbers.min_step or inf
+        else:
+            size = values["direction"] * (size if type(size) is float else size.reshape(-1)[lanes])
+        if self.lockstep:
+            integers[END_STEP] = integers[TOTAL] = total
+            memory.floats[STEP_SIZE] = size
+        elif width == 1 and not starts:
+            cells[self.time], cells[self.size] = begin, size
+        else:
+            for name, x in (("t", begin), ("h", size), ("stop", starts), ("kept", starts)):
+                if name in self.place:
+                    state[self.place[name], :count] = x
+        if count < width:
+            memory.block[:, :, count:] = memory.block[:, :, :1]
+        if not self.lockstep:
+            path = self._to_the_end(memory, count, task)
+        else:
+            path = memory.path(total, n + 2) if keeps else state
+            if keeps:
+                path[0, :n], path[0, n] = state[:n], begin
+                path = path[: total + 1] if count == width else path[: total + 1, :, :count]
+            self.kernel.run(memory.address)
+            alive = cells[self.alive] if width == 1 else state[self.alive, :count].min()
+            if alive <= 0:
+                return None
+            if cells[self.taken * width] != total:  # which is not counted
+                state[self.taken] = total
+        if path is None:
+            return None
+        for i in self.trouble:
+            if (cells[i] if width == 1 else state[i, :count].max()) > 0:
+                return None
+        if y is not None:
+            y[lanes] = memory.arrays["out"][: y.shape[2], :, :count].transpose(2, 1, 0)
+        if memory is self.memory:
+            return lanes, path.copy() if keeps else None, state.copy()
+        return lanes, path if keeps else None, state[self.kept_rows, :count]
 
     def _chunk(self, rows: int, *, keeps: bool) -> int:
         """Number of lanes that are run at once, whole blocks; 0 if even one block is too long for one call."""
@@ -352,144 +378,109 @@ class Plan:
             most = min(most, PATH_BYTES_PER_CALL // (8 * (self.n + 2) * rows))
         return padded(most, width) if most >= min(width, self.lanes) else 0
 
-    def _take(self, call: Call, args: Pytree, direction: float, rest: float) -> Mapping[str, Any]:
-        """Take over the numbers of a call as constants of the run; returns them by name."""
-        names = self.kernel.run_constants
-        values: dict[str, Any] = {"checks": 1.0, "direction": direction, "rest": rest}
-        if len(names) > 1:
-            values |= {"end": call.end, "rtol": call.rtol, "atol": call.atol, "max_step": call.max_step}
-            values["tiny"] = max(rest, call.min_step if call.dt is None else 0.0)
-            values["gap"] = gap_of(call.looks, call.end - call.begin, self.problem.field)
-            values["latest"] = bounds_of((call.begin, call.end))[1]
-        if args is not None:
-            check_numbers(args, self.shape)
-            values |= arg_values(args, len(self.shape))
-        self.constants[: len(names)] = [values.get(name, 0.0) for name in names]
+    def _take(
+        self, numbers: Numbers, begin: float, end: float, rest: float, found: Sequence[Leaf] | None
+    ) -> Mapping[str, Any]:
+        """Take over the numbers of a call as constants of the run; returns the direction and those of args by name."""
+        dt, rtol, atol, most, least, _, _, looks, *_ = numbers
+        tiny = rest if dt is not None or rest > least else least
+        gap = (gap_of(looks, end - begin, self.problem.field) if "gap" in self.slot else None) or 0.0
+        direction, latest = bounds_of((begin, end))
+        known = 1.0, direction, rest, end, rtol, atol, most, tiny, gap, latest
+        slots = self.slots
+        for place, i in self.own:
+            slots[place] = known[i]
+        values: dict[str, Any] = {"direction": direction}
+        if found is None:
+            return values
+        for (name, place), number in zip(self.names, numbers_in(found, len(self.shape)), strict=True):
+            values[name] = number
+            if place is not None:
+                slots[place] = number
         return values
 
-    def _run(self, memory: Memory, task: Task, points: Array, lanes: slice) -> list[Array] | None:
-        """Run the kernel for some points from begin to end; the parts of the path, None if a lane fails."""
-        call, n, count, state = task.call, self.n, len(points), memory.state
-        integers, floats, width = memory.integers, memory.floats, state.shape[1]
-        state[:] = memory.first
-        state[:n, :count] = points.T
-        times: Any = call.times
-        last = 0 if times is None else len(times) - int(times[-1] == call.end)
-        stops = memory.room("stops", last + 2)
-        if last:
-            stops[:last] = times[:last]
-        stops[last : last + 2] = call.end
-        memory.room("out", last + 2, n, width)
-        integers[LAST_STOP], integers[FIRST_STOP], floats[ORIGIN] = last, task.starts, call.begin
-        size: Any = call.dt
-        if size is None:
-            size = call.first_step or call.min_step or inf
-        else:
-            size = task.direction * (size if type(size) is float else size.reshape(-1)[lanes])
-        if self.lockstep:
-            state[self.place["count"]] = task.total
-            integers[END_STEP], integers[TOTAL], floats[STEP_SIZE] = task.total, task.total, size
-        else:
-            given = {"t": call.begin, "stop": task.starts, "kept": task.starts, "h": size}
-            for name, i in self.given:
-                state[i, :count] = given[name]
-        if count < width:
-            state[:, count:] = state[:, :1]
-        memory.start[:] = state[:n]
-        if not self.lockstep:
-            return self._to_the_end(memory, count, call.max_steps, keeps=task.keeps)
-        parts = [memory.room("path", task.total, n + 2, width)[: task.total]] if task.keeps else []
-        self.kernel.run(memory.address)
-        alive = state[self.place["alive"]]
-        return parts if (alive[0] if count == 1 else alive[:count].min()) > 0 else None
-
-    def _to_the_end(self, memory: Memory, count: int, most: float, *, keeps: bool) -> list[Array] | None:
-        """Run the kernel until all lanes are at the end, by steps of their own sizes."""
-        parts, width, row, state = list[Array](), memory.state.shape[1], self.n + 1, memory.state
-        alive, taken = state[self.place["alive"], :count], state[self.place["count"], :count]
-        memory.integers[END_STEP] = max(1, OPERATIONS_PER_CALL // (self.work * count))
+    def _to_the_end(self, memory: Memory, count: int, task: Task) -> Array | None:
+        """Run the kernel until all lanes are at the end, by steps of their own sizes; the path."""
+        parts, size, n, state, integers = list[Array](), self.n + 1, self.n, memory.state, memory.integers
+        keeps, most_steps, one = task[7], task[0].max_steps, state.shape[1] == 1
+        integers[END_STEP] = max(1, OPERATIONS_PER_CALL // (self.work * count))
         while True:
             if keeps:
-                path = memory.room("path", self.rows, row + 1, width)
-                memory.integers[END_STEP] = len(path)
-                path[:, row] = 0.0
+                path = memory.path(self.rows, n + 2)
+                path[0, :n], path[0, n], integers[END_STEP] = state[:n], task[3][0], len(path) - 1
+                if not one:
+                    path[1:, size] = 0.0
+            integers[BEGIN] = 0
             self.kernel.run(memory.address)
-            if keeps:
-                moved = np.flatnonzero(path[:, row, :count].any(axis=-1))
-                parts.append(path[: int(moved[-1]) + 1 if len(moved) else 0])
-            least, most_left = (alive[0], alive[0]) if count == 1 else (np.abs(alive).min(), alive.max())
-            if least == 0 or (taken[0] if count == 1 else taken.max()) >= most:
+            if one:
+                least, most_left, most = abs(left := memory.cells[self.alive]), left, memory.cells[self.taken]
+            else:
+                lanes = state[self.alive, :count]
+                least, most_left, most = np.abs(lanes).min(), lanes.max(), state[self.taken, :count].max()
+            if least == 0 or most >= most_steps:
                 return None
+            if keeps:
+                part = path[: integers[BEGIN] + 1] if one else path
+                if not one or len(part) != most + 1:  # some rows are not steps
+                    part[0, size] = not parts
+                    part = part[part[:, size, 0] != 0 if one else part[:, size, :count].any(axis=-1)]
+                parts.append(part)
             if most_left < 0:
-                return parts
+                break
             if keeps:  # the path is full
                 memory.arrays["path"], self.rows = np.zeros(0), 2 * self.rows
-
-    def _path(self, parts: list[Array], count: int) -> Array:
-        """The path of some lanes, without gaps, from its parts."""
-        path = (parts[0] if len(parts) == 1 else np.concatenate(parts))[..., :count]
-        if self.lockstep or (count == 1 and path[:, self.n + 1].all()):
+        path = state if not keeps else parts[0] if len(parts) == 1 else np.concatenate(parts)
+        if one or not keeps:
             return path
-        moved = path[:, self.n + 1] != 0
-        if not moved.all():
-            order = np.argsort(~moved, axis=0, kind="stable")[: int(moved.sum(axis=0).max(initial=0))]
-            path, moved = (np.take_along_axis(x, i, axis=0) for x, i in ((path, order[:, None]), (moved, order)))
-            path = np.where(moved[:, None], path, np.nan)
-        # memory that is used again is copied when the parts are joined
-        return path
+        path = path[..., :count]
+        moved = path[:, size] != 0
+        if moved.all():
+            return path
+        order = np.argsort(~moved, axis=0, kind="stable")[: int(moved.sum(axis=0).max(initial=0))]
+        path, moved = (np.take_along_axis(x, i, axis=0) for x, i in ((path, order[:, None]), (moved, order)))
+        return np.where(moved[:, None], path, np.nan)
 
     def _others(
-        self, call: Call, args: Pytree, numbers: Array, path: tuple[Array, Array, Array] | None,
-        starts: tuple[Array, Array | None], log: EventLog | None,
+        self, task: Task, args: Pytree, numbers: Array, path: Array | None, start: Array | None,
+        log: EventLog | None,
     ) -> dict[str, object]:  # fmt: skip
         """The other entries of a solution, which are made when one of them is asked for."""
-        p, shape, graph, (points, start) = self.problem, self.shape, self.kernel.graph, starts
+        p, shape, graph, given = self.problem, self.shape, self.kernel.graph, task[0]
         bound = p.field if args is None else p.field.with_args(args)
-        p = replace(p, bound=bound, span=(np.float64(call.begin), np.float64(call.end)))
-        row = dict(zip(self.kept, numbers, strict=True))
+        p = replace(p, bound=bound, span=(np.float64(task[3][0]), np.float64(task[3][1])))
+        row = {name: x[: self.lanes] for name, x in zip(self.kept, numbers, strict=True)}
         statistics = StepStatistics(self.step, shape)
-        if len(points):
-            note_ranks(statistics, p, self.step, points, self.ranked, shape)
-        statistics.add_compiled(np.arange(self.lanes), records_of(self.kernel, row), (call.begin, call.end))
+        if self.ranked is not None and start is not None:
+            note_ranks(statistics, p, self.step, start[self.ranked], self.ranked, shape)
+        statistics.add_compiled(np.arange(self.lanes), records_of(self.kernel, row), task[3])
         calls = calls_of(self.kernel, row, row.get("tries", row["count"]))
-        calls = calls + int(graph.first is not None and call.dt is None and not (call.first_step or call.min_step))
+        calls = calls + int(graph.first is not None and given.dt is None and not (given.first_step or given.min_step))
         steps = row["count"].astype(int)
-        check = replace(p.options, looks=call.looks).check(p.field.time_dependent)
-        direction = 1.0 if call.end > call.begin else -1.0
-        report = statistics.report(
-            p.action, p.options.clock, p.orbit_dimension, direction, check=check, engine=self.kernel.engine
-        )
+        check = replace(p.options, looks=given.looks).check(p.field.time_dependent)
+        how: dict[str, Any] = {"check": check, "engine": self.kernel.engine}
+        report = statistics.report(p.action, p.options.clock, p.orbit_dimension, task[4]["direction"], **how)
 
         def dense() -> DenseSolution:
-            t, y, sizes = path  # type: ignore[misc]
-            first = y[..., 0] if start is None else start
-            psi = Generator(bound, p.orbit_dimension, first.reshape(*shape, self.n))
-            begin = np.full(shape, p.span[0])
-            step = p.step.prepare(p.action, psi, psi.start, begin)  # type: ignore[arg-type]
-            times, points = (np.moveaxis(x.reshape(*shape, *x.shape[1:]), -1, 0) for x in (t, y))
-            sizes = np.moveaxis(np.nan_to_num(sizes).reshape(*shape, -1), -1, 0)
+            steps = path.swapaxes(1, 2).reshape(-1, *shape, self.n + 2)  # type: ignore[index]
+            times, points, sizes = steps[..., self.n], steps[..., : self.n], np.nan_to_num(steps[1:, ..., self.n + 1])
+            psi = Generator(bound, p.orbit_dimension, points[0])
+            step = p.step.prepare(p.action, psi, psi.start, np.full(shape, p.span[0]))  # type: ignore[arg-type]
             return DenseSolution(p.action, psi, step, times, points, sizes, nominal=p.options.nominal)
 
         t_events, y_events = (None, None) if log is None else log.lists()
         return {
-            "sol": dense() if call.dense else None, "t_events": t_events, "y_events": y_events,
+            "sol": dense() if given.dense else None, "t_events": t_events, "y_events": y_events,
             "nfev": self.prepared + int(calls.max()), "message": MESSAGES[END],
             "n_steps": steps.reshape(shape) if shape else int(steps[0]), "report": report,
             "statuses": np.full(shape, END) if shape else END, "njev": 0, "nlu": 0,
-            "_steps": dense if call.times is None or call.dense else None,
+            "_steps": dense if task[2] is None or given.dense else None,
         }  # fmt: skip
 
 
-def _joined(pieces: Sequence[Piece], points: Array, begin: float) -> tuple[Array, Array, Array]:
-    """Times (L, j + 1), points (L, N, j + 1) and sizes (L, j) of the paths of all lanes, filled up with NaN."""
-    (lanes, n), paths = points.shape, [(x.lanes, x.path) for x in pieces if x.path is not None]
-    rows = len(paths[0][1]) if len(paths) == 1 else max(len(path) for _, path in paths)
-    t, y, sizes = np.empty((lanes, rows + 1)), np.empty((lanes, n, rows + 1)), np.empty((lanes, rows))
-    t[:, 0], y[:, :, 0] = begin, points
+def _joined(pieces: Sequence[Piece], lanes: int) -> Array:
+    """The path of all lanes, filled up with NaN."""
+    paths = [(here, path) for here, path, _ in pieces if path is not None]
+    whole = np.full((max(len(path) for _, path in paths), paths[0][1].shape[1], lanes), np.nan)
     for here, path in paths:
-        count = len(path)
-        t[here, 1 : count + 1], y[here, :, 1 : count + 1] = path[:, n].T, path[:, :n].transpose(2, 1, 0)
-        sizes[here, :count] = path[:, n + 1].T
-        if count < rows:
-            t[here, count + 1 :], y[here, :, count + 1 :], sizes[here, count:] = np.nan, np.nan, np.nan
-    return t, y, sizes
+        whole[: len(path), :, here] = path
+    return whole

@@ -66,6 +66,18 @@ def arg_values(args: Pytree, lead: int) -> dict[str, Any]:
     return numbers
 
 
+def numbers_in(found: Sequence[Leaf], lead: int) -> list[Any]:
+    """The numbers in the leaves of args, without JAX, in the order of `arg_values`."""
+    numbers: list[Any] = []
+    for _, value in found:
+        if isinstance(value, PerTrajectory):
+            rows = value.value.reshape(int(np.prod(value.value.shape[:lead], dtype=int)), -1)
+            numbers += list(rows.T)
+        else:
+            numbers += np.ravel(value).tolist()
+    return numbers
+
+
 def args_form(args: Pytree, lead: int) -> Hashable:
     """The form that args must share for one graph to serve them: paths and shapes."""
     return tuple(

@@ -6,7 +6,7 @@ import os
 from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, Unpack, final
 
 import numpy as np
@@ -78,43 +78,16 @@ def engine_of(engine: str | Engine) -> Engine:
 
 @final
 class BoundCall:
-    """A call of a propagator from its points; the first call checks everything, the next ones times, sizes and args."""
+    """A call of a propagator from its points, as a function of time span and args."""
 
     def __init__(self, propagator: Propagator, points: Values, args: Pytree, options: CallOptions) -> None:
         self._propagator, self._points, self._args, self._options = propagator, points, args, options
-        self._dt, self._times = options.get("dt"), options.get("t_eval")
-        self._first: Problem | None = None
-        self._is_new = True
 
     def __call__(self, t_span: Iterable[float] | Span, args: Pytree = None) -> Solution:
         """The trajectories over a time span, with other args if they are given."""
-        if self._is_new and args is not None:
-            self._args = args
-        self._is_new = False
-        propagator, options = self._propagator, self._options
-        args = propagator._args_for(self._args if args is None else args)
-        solution = propagator._again(t_span, self._points, options, args)
-        return self._called(t_span, args) if solution is None else solution
-
-    def _called(self, t_span: Iterable[float] | Span, args: Pytree) -> Solution:
-        """The solution of a call that is not like one before."""
-        known, propagator = self._first, self._propagator
-        if known is None:
-            self._first = known = propagator.problem(t_span, self._points, args=args, **self._options)
-            return warned(propagator.solve(known), known, stacklevel=4)
-        start: Any = known.start
-        span = span_of(t_span, start.dtype)
-        options, bound = known.options, known.bound
-        if self._dt is not None or self._times is not None:
-            dt = None if self._dt is None else step_sizes(self._dt, start, span)
-            times = None if self._times is None else times_of(self._times, span)
-            options = replace(options, dt=dt, t_eval=times)
-        if args is not None:
-            check_numbers(args, start.shape[:-1])
-            bound = known.field.with_args(args)
-        with shapes_named(args):
-            problem = replace(known, span=span, options=options, bound=bound, args=args)
-            return warned(propagator.solve(problem), problem, stacklevel=4)
+        self._args = args if self._args is None else self._args
+        args = self._args if args is None else args
+        return self._propagator._called(t_span, self._points, args, self._options, stacklevel=4)
 
 
 # Inspection: what a step can do at given points, without a step being made.
@@ -272,26 +245,26 @@ class Propagator:
         self, t_span: Iterable[float] | Span, y0: npt.ArrayLike, *, args: Pytree = None, **options: Unpack[CallOptions]
     ) -> Solution:
         """The trajectories from y0, a `Solution`; parameters and options are those of `integrate`."""
-        solution = self._again(t_span, y0, options, self._args_for(args))
+        return self._called(t_span, y0, args, options, stacklevel=4)
+
+    def _called(
+        self, t_span: Iterable[float] | Span, y0: npt.ArrayLike, args: Pytree, options: CallOptions, *, stacklevel: int
+    ) -> Solution:  # fmt: skip
+        """The solution of a call: of a form that the engine knows, or from the beginning."""
+        engine = self.engine if self.step is not None else self._engine_for(self._step_for(**options))
+        again: Callable[..., Solution | None] | None = getattr(engine, "again", None)
+        solution = None if again is None else again(t_span, y0, options, self._args_for(args))
         if solution is None:
             problem = self.problem(t_span, y0, args=args, **options)
-            return warned(self.solve(problem), problem, stacklevel=3)
+            return warned(self.solve(problem), problem, stacklevel=stacklevel)
         return solution
-
-    def _again(
-        self, t_span: Iterable[float] | Span, y0: npt.ArrayLike, options: CallOptions, args: Pytree
-    ) -> Solution | None:
-        """The solution of a call of a form that the engine knows; such calls come to their end as they should."""
-        again: Callable[..., Solution | None] | None
-        again = getattr(self._engine_for(self._step_for(**options)), "again", None)
-        return None if again is None else again(t_span, y0, options, args)
 
     def solve(self, problem: Problem) -> Solution:
         """The solution of a `problem` of this propagator, by its engine; by numpy if the group fixes a point."""
         return (NumpyEngine() if has_fixed_points(problem) else self._engine_for(problem.step)).solve(problem)
 
     def bind(self, y0: npt.ArrayLike, *, args: Pytree = None, **options: Unpack[CallOptions]) -> BoundCall:
-        """The call from y0 as a function of time span and args, for inner loops: the points are checked once.
+        """The call from y0 as a function of time span and args, for inner loops.
 
         Parameters and options are those of a call.
 
@@ -352,7 +325,7 @@ class Propagator:
 
     def _args_for(self, args: Pytree) -> Pytree:
         """The args of a call: its own, or those of the propagator, or those of the field."""
-        return next((x for x in (args, self.args, self.field.args) if x is not None), None)
+        return args if args is not None else self.args if self.args is not None else self.field.args
 
     def _step_for(
         self, *, dt: npt.ArrayLike | None = None, rtol: float = RTOL, atol: npt.ArrayLike = ATOL, **_: object

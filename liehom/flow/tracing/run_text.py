@@ -94,6 +94,7 @@ class _RunWriter:
             kind = "ptr" if name in POINTERS else "double" if name in FLOATS else "i64"
             here = self.w.emit(f"getelementptr i64, ptr %argument, i64 {place}")
             self.line(f"%{name} = load {kind}, ptr {here}, align 8")
+        self.line(f"%begin.place = getelementptr i64, ptr %argument, i64 {FIELDS.index('begin')}")
         self.entry = len(self.w.lines)
         self.line(
             "%keeps = icmp ne ptr %path, null",
@@ -373,6 +374,7 @@ class _OwnSizes(_RunWriter):
 
     A lane that has reached a stop stores the point there, and goes on to the next stop within the same step; at the
     end it is `DONE`. If a step is rejected, the stops within it are sought again (`kept` is the first of them).
+    The number of the next step of the last block is left in `begin`.
     """
 
     def _before_loop(self, state: dict[str, str]) -> None:
@@ -431,7 +433,7 @@ class _OwnSizes(_RunWriter):
         )
         moved = self._select("%moved", size, w.splat(0.0))
         self._store_path("%keeps", {"t": "%t.next", "h": moved}, "step.end")
-        self.line("%k.next = add i64 %k, 1")
+        self.line("%k.next = add i64 %k, 1", "store i64 %k.next, ptr %begin.place, align 8")
         self._go_on("%k.next", "%end", "step", "block.end")
 
     def _mixed(self, new: dict[str, str], valid: str, accepted: str, reached: str) -> None:

@@ -130,18 +130,15 @@ def test_a_bound_call_checks_what_changes() -> None:
         lh.Propagator(field, "rk4").bind(START, method="rk4")  # type: ignore[call-arg]
 
 
-def test_points_are_checked_once_in_an_inner_loop(monkeypatch: pytest.MonkeyPatch) -> None:
-    from liehom.flow.propagation import propagator as module
-
-    counts: list[int] = []
-    check = module.check_point
-    monkeypatch.setattr(module, "check_point", lambda *given, **more: counts.append(1) or check(*given, **more))
-    go = lh.Propagator(FIELD, "rk4").bind(START, dt=0.5)
-    for _ in range(3):
-        go((0, 1))
-    assert len(counts) == 1
-    lh.Propagator(FIELD, "rk4")((0, 1), START, dt=0.5)  # a control
-    assert len(counts) == 2
+def test_a_bound_call_has_the_points_and_the_args_of_its_beginning() -> None:
+    field = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m, t, args: -m * args)
+    propagator, points = lh.Propagator(field, "rk4"), START.copy()
+    rates = np.array([1.0, 0.5, 0.25])
+    go = propagator.bind(points, args=rates, dt=0.5)
+    points[:] = [0.0, 0.0, 1.0]
+    other = propagator((0, 1), START, args=2.0 * rates, dt=0.5).y
+    np.testing.assert_array_equal(go((0, 1), 2.0 * rates).y, other)
+    np.testing.assert_array_equal(go((0, 1)).y, propagator((0, 1), START, args=rates, dt=0.5).y)
 
 
 def test_an_inspection_finds_what_the_report_of_a_run_finds() -> None:
