@@ -24,6 +24,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from difflib import get_close_matches
 from fractions import Fraction
+from itertools import pairwise
 from math import gcd
 from typing import TypeAlias, TypeVar, final
 
@@ -179,7 +180,7 @@ _FAMILIES = {"gr": "Gr(2,5), Gr(2,C^5)", "v": "V(2,5), V(2,H^3)", "fl": "Fl(1,2;
 
 
 def space_name(term: Term) -> str | None:
-    """The name of the pair that a geometer's name of a space denotes, such as S^4 or Gr(2,C^4); None for other names."""
+    """The name of the pair that the name of a space denotes, such as S^4 or Gr(2,C^4); None for other names."""
     letters, _, digits = term.head.partition("^")
     if not term.items and digits:
         if term.head in _SINGLE:
@@ -210,11 +211,11 @@ def _subspaces(family: str, numbers: list[int], last: Item, count: int) -> str |
     if len(numbers) != count - 1 or letter not in ("R", "C", "H") or (family != "fl" and count != 2):
         return None
     ends = [0, *numbers, n + (family == "v")]  # an orthonormal frame may be a basis
-    if any(a >= b for a, b in zip(ends, ends[1:], strict=False)):
+    if any(a >= b for a, b in pairwise(ends)):
         return None
     ends[-1] = n
     head, inner = {"R": ("so", "so"), "C": ("su", "u"), "H": ("sp", "sp")}[letter]
-    sizes = [b - a for a, b in zip(ends, ends[1:], strict=False)]
+    sizes = [b - a for a, b in pairwise(ends)]
     if family == "v":
         rest = f"{head}({sizes[-1]})" if sizes[-1] > (letter != "H") else "0"
         return f"{'u' if letter == 'C' and not sizes[-1] else head}({n})/{rest}"
