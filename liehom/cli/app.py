@@ -245,7 +245,7 @@ def _range(text: str, psi: str | None, as_json: bool) -> int:
 
 @command(app, 'liehom geometry "SU(3)/T^2"', 'liehom geometry "CP^3" --json')
 def geometry(pair: PairArgument, json: JsonOption = False) -> None:
-    """Describe the invariant geometry of G/H: metrics, Einstein metrics, cohomology, symplectic and complex structures."""
+    """Describe the invariant geometry of G/H: metrics, Einstein metrics, cohomology, symplectic forms."""
     run(lambda: _geometry(pair, json))
 
 
