@@ -19,7 +19,7 @@ import numpy.typing as npt
 from liehom.base.errors import FieldError, InputError, ShapeError, displayed
 from liehom.base.typing import Array, VectorLike
 from liehom.flow.action.field import GeneratorField
-from liehom.flow.door import InvariantMetric, Representation, adjoint, coadjoint, trivial
+from liehom.flow.door import Field, InvariantMetric, Representation, adjoint, coadjoint, trivial
 from liehom.flow.engines.arguments import CallOptions
 from liehom.flow.methods.low_order import Euler
 from liehom.flow.propagation.integration import integrate
@@ -66,7 +66,10 @@ class Geodesic:
     @property
     def velocities(self) -> Array:
         """Coordinates in m of the velocity, moved back to the base point by g(t), shape (k, d)."""
-        rows: Array = np.linalg.solve(_floats(self.metric.matrix()), (self.momenta @ _complement(self.metric).T).T).T
+        split = self.metric.metrics.split
+        field: Any = self.metric.field
+        on_m = self.momenta @ _floats(field, split.complement).T
+        rows: Array = np.linalg.solve(_floats(field, self.metric.matrix()), on_m.T).T
         return rows
 
     @property
@@ -80,7 +83,7 @@ class Geodesic:
         start, rho = np.asarray(point, dtype=float), self.representation
         if start.shape != (rho.size,):
             raise ShapeError(f"a point has {rho.size} coordinates, got the shape {start.shape}")
-        moved = [_floats(rho(z)) @ start for z in self.metric.metrics.pair.subalgebra.rows()]
+        moved = [_floats(rho.field, rho(z)) @ start for z in self.metric.metrics.pair.subalgebra.rows()]
         if any(np.abs(v).max() > 1e-12 * np.abs(start).max() for v in moved):
             raise InputError(f"h does not fix the point {displayed(point)}, so G/H is not its orbit")
         rows: Array = self.group @ start
@@ -89,18 +92,16 @@ class Geodesic:
     def speeds(self) -> Array:
         """The lengths of the velocities, shape (k,), which an exact geodesic keeps constant."""
         v = self.velocities
-        squares: Array = np.einsum("ki,ij,kj->k", v, _floats(self.metric.matrix()), v)
+        field: Any = self.metric.field
+        squares: Array = np.einsum("ki,ij,kj->k", v, _floats(field, self.metric.matrix()), v)
         return np.sqrt(np.abs(squares))
 
 
-def _floats(table: Iterable[Any]) -> Array:
-    """A matrix of exact numbers in float64."""
-    rows: Array = np.array([[float(x) for x in row] for row in np.asarray(table)])
-    return rows
-
-
-def _complement(metric: InvariantMetric) -> Array:
-    return _floats(metric.metrics.split.complement)
+def _floats(field: Field, table: Iterable[Any]) -> Array:
+    """An array of exact numbers in float64."""
+    values = np.asarray(table, dtype=object)
+    numbers: Array = np.array([field.to_float(field.convert(x)) for x in values.ravel()]).reshape(values.shape)
+    return numbers
 
 
 def geodesic(
@@ -149,19 +150,20 @@ def geodesic(
     if rho.algebra != g:
         raise InputError(f"the representation is of {displayed(rho.algebra)}, the metric of {displayed(g)}")
     metric.signature()  # refuses parameters
+    field: Any = metric.field
     try:
         exact = metric.geodesic_vector(x)
-        velocity: Array = np.array([float(v) for v in metric._vector(x)])
+        velocity = _floats(field, list(x))
     except FieldError:  # floats
         exact = None
         velocity = np.asarray(x, dtype=float)
-    form, complement = _floats(metric.matrix()), _complement(metric)
+    form, complement = _floats(field, metric.matrix()), _floats(field, split.complement)
     if velocity.shape != (len(form),):
         raise ShapeError(f"a tangent vector has {len(form)} coordinates, got the shape {velocity.shape}")
     both = coadjoint(g).direct_sum(rho.dual().tensor(trivial(g, rho.size)))
-    start = np.concatenate([_floats(split.coordinates) @ form @ velocity, np.eye(rho.size).ravel()])
+    start = np.concatenate([_floats(field, split.coordinates) @ form @ velocity, np.eye(rho.size).ravel()])
     n, inertia = g.dimension, complement.T @ np.linalg.solve(form, complement)
-    psi: Any = (lambda m: -m[..., :n] @ inertia) if exact is None else -np.array([float(v) for v in exact])
+    psi: Any = (lambda m: -m[..., :n] @ inertia) if exact is None else -_floats(field, exact)
     if exact is not None and step is None and not {"dt", "rtol", "atol"} & options.keys():
         times = list(t_span)
         step, options["dt"] = Euler(), (times[-1] - times[0]) / STEPS  # exp(hX), exactly

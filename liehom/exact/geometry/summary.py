@@ -77,11 +77,11 @@ def _einstein(metrics: InvariantMetrics) -> tuple[Any, str]:
     found = metrics.einstein()
     value = {"count": len(found), "kinds": found.kinds, "complete": found.complete}
     write = [[str(x) for x in m.parameters] for m in found]
-    rational = [m.metric.field.degree == 1 for m in found]
-    short = [
-        f"({', '.join(row)})" if exact else f"about ({', '.join(f'{float(x):.6g}' for x in m.parameters)})"
-        for m, row, exact in zip(found, write, rational, strict=True)
-    ]
+    short = []
+    for m, row in zip(found, write, strict=True):
+        field: Any = m.metric.field
+        decimals = [f"{field.to_float(x):.6g}" for x in m.parameters]
+        short.append(f"({', '.join(row)})" if field.degree == 1 else f"about ({', '.join(decimals)})")
     number = f"{len(found)} up to scale" if found.complete else f"at least {len(found)}"
     kinds = f", of {found.kinds} kinds" if found.kinds > 1 else ""
     shown = ": " + "; ".join([*short[:4], *["..."] * (len(short) > 4)]) if short else ""
