@@ -23,7 +23,7 @@ from liehom.flow.door import Field, InvariantMetric, Representation, adjoint, co
 from liehom.flow.engines.arguments import CallOptions
 from liehom.flow.methods.low_order import Euler
 from liehom.flow.propagation.integration import integrate
-from liehom.flow.run.options import Span
+from liehom.flow.run.options import Span, span_of
 from liehom.flow.run.solution import Solution
 from liehom.flow.steps.step import StepLike
 
@@ -54,8 +54,7 @@ class Geodesic:
     @property
     def t(self) -> Array:
         """The times, shape (k,)."""
-        times: Array = self.solution.t
-        return times
+        return np.asarray(self.solution.t, dtype=float)
 
     @property
     def momenta(self) -> Array:
@@ -69,8 +68,7 @@ class Geodesic:
         split = self.metric.metrics.split
         field: Any = self.metric.field
         on_m = self.momenta @ _floats(field, split.complement).T
-        rows: Array = np.linalg.solve(_floats(field, self.metric.matrix()), on_m.T).T
-        return rows
+        return np.asarray(np.linalg.solve(_floats(field, self.metric.matrix()), on_m.T).T, dtype=float)
 
     @property
     def group(self) -> Array:
@@ -165,8 +163,7 @@ def geodesic(
     n, inertia = g.dimension, complement.T @ np.linalg.solve(form, complement)
     psi: Any = (lambda m: -m[..., :n] @ inertia) if exact is None else -_floats(field, exact)
     if exact is not None and step is None and not {"dt", "rtol", "atol"} & options.keys():
-        times = list(t_span)
-        step, options["dt"] = Euler(), (times[-1] - times[0]) / STEPS  # exp(hX), exactly
-        t_span = times
+        first, last = t_span = span_of(t_span, np.dtype(float))
+        step, options["dt"] = Euler(), (last - first) / STEPS  # exp(hX), exactly
     solution = integrate(GeneratorField(both, psi), t_span, start, step=step, **options)
     return Geodesic(metric, rho, solution, exact is not None)

@@ -349,9 +349,9 @@ def _torus(top: Term, bottom: Expression, matrices: IntegerArray) -> Rows:
     heads = {t.head for t in terms(bottom)}
     if kind != "sp" or "u" not in heads or not all(sizes) or sum(sizes) != places:
         return None
-    labels = np.repeat(range(len(sizes)), sizes)
-    circles = np.repeat([int(t.head == "u") for t in terms(bottom)], sizes)
-    return preserving(matrices, commuting=[np.kron(np.diag(labels), np.eye(4, dtype=np.int64)), element(circles)])
+    labels = np.repeat(range(len(sizes)), 4 * np.array(sizes, dtype=np.int64)).astype(np.int64)
+    circles = [int(t.head == "u") for t, n in zip(terms(bottom), sizes, strict=True) for _ in range(n)]
+    return preserving(matrices, commuting=[np.diag(labels), element(circles)])
 
 
 def _signed_blocks(signature: tuple[int, int], parts: Sequence[tuple[int, int]], matrices: IntegerArray) -> Rows:
