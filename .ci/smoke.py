@@ -48,6 +48,7 @@ field = lh.number_field("sqrt(2)")
 expect("sympy's sqrt(2)", field.convert(sympy.sqrt(2)) ** 2, 2)
 rho = lh.adjoint(lh.so(3)).over(field)
 expect("isotropy", rho.isotropy(["sqrt(2)", Fraction(1, 2), 0]).dimension, 1)
+expect("Einstein metrics", len(lh.pair("SU(3)/T^2").invariant_metrics().einstein()), 4)
 expect("cohomology", lh.heisenberg(1).cohomology(1).dimension, 2)
 
 euler = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m: -m / np.array([1.0, 2.0, 3.0]))

@@ -114,6 +114,7 @@ from liehom.flow import (
     bodies as bodies,
     convergence as convergence,
     engines as engines,
+    geodesics as geodesics,
     methods as methods,
     propagation as propagation,
     run as run,
@@ -126,6 +127,7 @@ from liehom.flow.action.field import GeneratorField as GeneratorField, hamiltoni
 from liehom.flow.action.space import Action as Action
 from liehom.flow.convergence.costs import work_precision as work_precision
 from liehom.flow.convergence.orders import observed_order as observed_order
+from liehom.flow.geodesics import geodesic as geodesic
 from liehom.flow.methods.low_order import (
     BackwardEuler as BackwardEuler,
     Euler as Euler,

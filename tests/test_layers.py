@@ -42,7 +42,7 @@ ORDER: dict[str, list[str]] = {
         ),
         "liehom.exact.fullness.checker": "verify_modular verify_roots verify_pair verify",
         "liehom.exact.fullness.search": "dominance forms witnesses",
-        "liehom.exact.geometry": "reductive metrics polynomial_systems einstein forms",
+        "liehom.exact.geometry": "reductive metrics polynomial_systems einstein forms summary",
         "liehom.exact.orbits": "conjugacy range cone types strata",
         "liehom.exact.pauli": "words span simple_ideals dynamical",
         "liehom.exact.representations": "invariants core rationalization highest_weight constructions analysis",
@@ -54,7 +54,9 @@ ORDER: dict[str, list[str]] = {
             "field grammar integer_matrices exact_field rational function_field polynomial modular number_fields "
             "floating complex_parts polynomial_matrix roots extension joint_spectrum sparse subspaces lattices"
         ),
-        "liehom.flow": "door tracing series action steps run methods engines propagation convergence bodies spins",
+        "liehom.flow": (
+            "door tracing series action steps run methods engines propagation convergence bodies spins geodesics"
+        ),
         "liehom.flow.action": (
             "maps exponential custom_exponential expression components frames field rigid_motions space fingerprint "
             "invariants quadrics"

@@ -243,6 +243,30 @@ def _range(text: str, psi: str | None, as_json: bool) -> int:
     return _shown(as_json, data, str(condition), rows, pair.field)
 
 
+@command(app, 'liehom geometry "SU(3)/T^2"', 'liehom geometry "CP^3" --json')
+def geometry(pair: PairArgument, json: JsonOption = False) -> None:
+    """Describe the invariant geometry of G/H: metrics, Einstein metrics, cohomology, symplectic forms."""
+    run(lambda: _geometry(pair, json))
+
+
+def _geometry(text: str, as_json: bool) -> int:
+    from liehom.cli.inputs import pair_argument, pair_facts, pair_line
+    from liehom.exact.geometry.summary import geometry_facts
+
+    pair = pair_argument(text)
+    rows, data = [("pair", pair_line(text, pair))], {}
+    for fact in geometry_facts(pair):
+        data[fact.name] = fact.value
+        step(fact.name.replace("_", " "))
+        rows.append((fact.name.replace("_", " "), fact.words))
+    reductive, count = data["reductive"], data.get("metrics")
+    many = "1 parameter" if count == 1 else f"{count} parameters"
+    sentence = f"G/H has invariant metrics with {many}" if count else "G/H has no invariant metric"
+    if not reductive or count is None:
+        sentence = "G/H is a point" if reductive else "the pair is not reductive"
+    return show_result(as_json, {**data, "pair": pair_facts(text, pair)}, sentence, rows)
+
+
 command(app, 'liehom classify "so(6)/u(3)"')(classify_commands.classify)
 command(app, "liehom full-pairs 3")(classify_commands.full_pairs)
 command(app, 'liehom describe "so(4,1)"', 'liehom describe "e(3)/so(3)"', "liehom describe examples/sym3.json")(

@@ -8,8 +8,9 @@ from liehom.exact.algebra.constructions.families import abelian
 from liehom.exact.algebra.constructions.sums import direct_sum
 from liehom.exact.algebra.core.lie_algebra import LieAlgebra
 from liehom.exact.algebra.core.subalgebra import Subalgebra
+from liehom.exact.geometry.metrics import InvariantMetric
 from liehom.exact.orbits.range import batched_ranks
-from liehom.exact.representations.constructions import adjoint, coadjoint, defining
+from liehom.exact.representations.constructions import adjoint, coadjoint, defining, trivial
 from liehom.exact.representations.core.coordinates import Copies, copies_of
 from liehom.exact.representations.core.representation import Representation
 from liehom.exact.scalars.exact_field import ExactMatrix
@@ -27,6 +28,7 @@ __all__ = [
     "ExactMatrix",
     "Field",
     "FunctionField",
+    "InvariantMetric",
     "LieAlgebra",
     "Matrix",
     "Name",
@@ -52,4 +54,5 @@ __all__ = [
     "evaluate",
     "parse",
     "so",
+    "trivial",
 ]

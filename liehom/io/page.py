@@ -31,6 +31,7 @@ from liehom.exact.fullness.verdict import (
     Verdict,
     failure_report,
 )
+from liehom.exact.geometry.summary import geometry_facts
 from liehom.exact.representations.core.pair import Pair
 from liehom.exact.scalars.exact_field import ExactField, ExactMatrix, as_exact
 from liehom.exact.scalars.field import Matrix, Scalar
@@ -517,6 +518,7 @@ VERDICTS = (Full, NotFull, NumericallyFull, NumericallyNotFull, NumericallyUndec
 
 MOST_BRACKETS = 60
 MOST_MATRICES = 12
+MAX_CURVED = 8  # Largest dimension of G/H whose geometry a page describes
 MAX_DESCRIBED = 60  # Largest dimension of an algebra whose structure a page describes: larger ones can take minutes
 MAX_FILE = 1_000_000  # Bytes of a file that a page contains
 
@@ -581,7 +583,7 @@ def _page(verdict: Verdict) -> str:
     policy = f"default-src 'none'; style-src 'unsafe-inline'; script-src 'sha256-{digest}'; img-src data:"
     sections = [
         *(_proof(verdict), _failures(verdict)),
-        *(_structure(verdict.pair), _isotropy(verdict.pair), _brackets(verdict.pair)),
+        *(_structure(verdict.pair), _isotropy(verdict.pair), _geometry(verdict.pair), _brackets(verdict.pair)),
         _files(verdict),
     ]
     return (
@@ -614,6 +616,7 @@ SECTIONS = {
     "failures": "Where (6.3) fails",
     "structure": "g and h",
     "isotropy": "Isotropy representation",
+    "geometry": "Invariant geometry of G/H",
     "brackets": "Brackets",
     "files": "Check it yourself",
 }
@@ -718,6 +721,16 @@ def _isotropy(pair: Pair) -> str:
         ),
         f'<div class="matrices">{"".join(blocks)}</div>',
         details("Coordinates of g/h", table(["coordinate", "of the element of g"], names, "coordinates")),
+    )
+
+
+def _geometry(pair: Pair) -> str:
+    if not pair.field.exact or pair.dimension > MAX_CURVED:
+        words = "of exact pairs" if not pair.field.exact else f"up to dim g/h = {MAX_CURVED}"
+        return _section("geometry", paragraph(f"Computed here for metrics and forms {words} only."))
+    shown = [(fact.name.replace("_", " "), fact.words) for fact in geometry_facts(pair, einstein=False)]
+    return _section(
+        "geometry", facts(shown), paragraph("The command `liehom geometry` lists the Einstein metrics too.")
     )
 
 

@@ -21,8 +21,8 @@ EXAMPLES = ROOT / "examples"
 FULL, NOT_FULL, FLOAT = (str(EXAMPLES / f"{name}.json") for name in ("so4_so3", "so31_so21", "so4_so3_float"))
 SYM3 = str(EXAMPLES / "sym3.json")
 COMMANDS = (
-    "fullness", "verify", "isotropy", "range", "classify", "full-pairs", "describe", "integrate", "order", "reproduce",
-    "catalog", "demo", "atlas",
+    "fullness", "verify", "isotropy", "range", "geometry", "classify", "full-pairs", "describe", "integrate", "order",
+    "reproduce", "catalog", "demo", "atlas",
 )  # fmt: skip
 
 

@@ -90,7 +90,8 @@ affine(e6(-26)) affine(e6(-26)+R) affine(f4) affine(S2(gl(2))) affine(S3(gl(2)))
 affine(sym(3)) affine(upper(2)) affine(upper(3)) affine(strict(3)) affine(blocks(so(2),so(3)))
 affine(blocks(gl(1),gl(1))) affine(copies(2,so(3))) affine(copies(2,sl(2))) affine(copies(2,spin(7)))
 affine(diag(1,-1)) affine(diag(1,2)) affine(spiral(1,1,2)) sym(3;1,1,1) sym(4;2,2) sym(4;2,1,1) sym(4;1,1,1,1)
-sym(6;3,3)
+sym(6;3,3) su(3)/T^2 su(4)/s(u(2)+u(1)+u(1)) sp(3)/u(1)+sp(2) su(3)/u(1;1,2,-3) f4/spin(8) g2/so(4) sl(3)/K
+dual(sl(3)/so(3))
 """
 
 PAIR_NAMES = tuple(NAMES.split())
@@ -264,7 +265,14 @@ def special_rows(top: Term, bottom: Expression, matrices: IntegerArray) -> Rows:
 
 
 def _exceptional(top: Term, bottom: Expression, matrices: IntegerArray) -> Rows:
-    """The stabilizer of a sum of coordinate vectors (idempotents, the identity, an octonion), or None."""
+    """The stabilizer of coordinate vectors or their sum (idempotents, the identity, an octonion), or None.
+
+    Also of the quaternions among the octonions, for g2/so(4).
+    """
+    if f"{top}/{bottom}" == "g2/so(4)":
+        return preserving(matrices, subspaces=[first_units(3, 7)])
+    if f"{top}/{bottom}" == "f4/spin(8)":
+        return preserving(matrices, points=list(first_units(3, 27)))
     plus, minus = _split_octonion_units()
     points: dict[str, tuple[int, ...]] = {
         "f4/spin(9)": (0,),
@@ -300,9 +308,9 @@ def _unitary(top: Term, bottom: Expression, matrices: IntegerArray) -> Rows:
 
 
 def _special_blocks(top: Term, bottom: Expression, matrices: IntegerArray) -> Rows:
-    """The stabilizer of two summands, for su(p,q)/s(u(a,b)+u(c,d)) and sl(n)/s(gl(p)+gl(q)), or None."""
+    """The stabilizer of summands, for su(n)/s(u(p)+u(q)+...), su(p,q)/s(u(a,b)+u(c,d)), sl(n)/s(gl(p)+...), or None."""
     inner = bottom.items[0] if isinstance(bottom, Term) and bottom.head == "s" and len(bottom.items) == 1 else None
-    if not isinstance(inner, Sum) or len(inner.terms) != 2 or {t.head for t in inner.terms} - {"u", "gl"}:
+    if not isinstance(inner, Sum) or {t.head for t in inner.terms} - {"u", "gl"}:
         return None
     kind = "u" if top.head == "su" else "gl"
     sizes = [sum(_signature(t)) for t in inner.terms]
@@ -310,8 +318,40 @@ def _special_blocks(top: Term, bottom: Expression, matrices: IntegerArray) -> Ro
     if top.head not in ("su", "sl") or any(t.head != kind for t in inner.terms) or sum(sizes) * unit != size:
         return None
     if top.head == "su" and len(top.items) == 2:
-        return _signed_blocks(_signature(top), [_signature(t) for t in inner.terms], matrices)
-    return preserving(matrices, subspaces=_split(size, sizes[0] * unit))
+        parts = [_signature(t) for t in inner.terms]
+        return _signed_blocks(_signature(top), parts, matrices) if len(parts) == 2 else None
+    return preserving(matrices, commuting=[np.diag(np.repeat(range(len(sizes)), [n * unit for n in sizes]))])
+
+
+def _torus(top: Term, bottom: Expression, matrices: IntegerArray) -> Rows:
+    """Circles, maximal tori and centralizers of tori in su(n), so(n) and sp(n), or None.
+
+    The circle u(1;w1,...,wn) has these weights; T^n and sp(n)/u(p)+...+sp(q)+... commute with elements of a torus.
+    """
+    kind, size = top.head, matrices.shape[1]
+    if kind not in ("su", "so", "sp") or len(top.items) != 1 or not isinstance(bottom, Term | Sum):
+        return None
+    unit, turn = (4, families.quaternionic_gl(1)[1]) if kind == "sp" else (2, families.complex_structure(1))
+    places = size // unit
+
+    def element(weights: Sequence[int]) -> IntegerArray:
+        out = np.zeros((size, size), dtype=np.int64)
+        out[: places * unit, : places * unit] = np.kron(np.diag(weights), turn)
+        return out
+
+    if isinstance(bottom, Term) and bottom.head == "u" and bottom.items == (1,) and len(bottom.after) == places:
+        weights = [int(w) for w in bottom.after]
+        return coordinates(matrices, element(weights)[None]) if any(weights) else None
+    if isinstance(bottom, Term) and bottom.head.startswith("T^"):
+        rows = preserving(matrices, commuting=[element(range(1, places + 1))])
+        return rows if f"T^{len(rows)}" == bottom.head else None
+    sizes = [_integer(t.items[0]) if len(t.items) == 1 and t.head in ("u", "sp") else 0 for t in terms(bottom)]
+    heads = {t.head for t in terms(bottom)}
+    if kind != "sp" or "u" not in heads or not all(sizes) or sum(sizes) != places:
+        return None
+    labels = np.repeat(range(len(sizes)), 4 * np.array(sizes, dtype=np.int64)).astype(np.int64)
+    circles = [int(t.head == "u") for t, n in zip(terms(bottom), sizes, strict=True) for _ in range(n)]
+    return preserving(matrices, commuting=[np.diag(labels), element(circles)])
 
 
 def _signed_blocks(signature: tuple[int, int], parts: Sequence[tuple[int, int]], matrices: IntegerArray) -> Rows:
@@ -387,7 +427,7 @@ def _symplectic_sum(top: Term, bottom: Sum, matrices: IntegerArray) -> Rows:
 
 
 _RULES: Sequence[Callable[[Term, Expression, IntegerArray], Rows]] = (
-    _exceptional, _unitary, _special_blocks, _symmetric,
+    _exceptional, _unitary, _special_blocks, _torus, _symmetric,
 )  # fmt: skip
 
 
@@ -430,6 +470,8 @@ def _split_octonion_units() -> tuple[int, int]:
 #                 in e6 the stabilizer of the line of an idempotent, in g2(2) of a null line
 # G/P{i,j,...}    the parabolic subalgebra of a simple real algebra with these nodes of the Satake diagram crossed
 # G/B             in sl(n) and gl(n) the stabilizer of a complete flag
+# G/K, G/T^r      a maximal compact subalgebra of semisimple G; the maximal torus of compact G of rank r
+# dual(G/H)       the dual of a symmetric pair: with the other sign of [m, m]
 # G/H             the subalgebra in the table of `special`; otherwise H as diagonal blocks of the matrices of G
 
 _ROTATING = ("e", "iso", "galilei", "bargmann", "schroedinger")
@@ -442,8 +484,8 @@ def pair(name: str) -> Pair:
     Parameters
     ----------
     name : str
-        Such as 'so(4)/so(3)', 'su(3)/u(2)', 'sl(3)/P1', 'affine(spin(9,1)+R)', 'sym(4;3,1)'; `pair_names` lists
-        one of each kind; other sizes are valid too.
+        Such as 'so(4)/so(3)', 'SU(3)/T^2', 'sl(3)/P1', 'affine(spin(9,1)+R)', 'sym(4;3,1)', or the name of a space
+        such as 'CP^3', 'Gr(2,C^5)', 'V(2,5)', 'W(1,2)'; `pair_names` lists one of each kind; other sizes are valid too.
 
     Returns
     -------
@@ -460,6 +502,8 @@ def pair(name: str) -> Pair:
     >>> import liehom as lh
     >>> lh.pair("so(4)/so(3)"), lh.pair("sl(3, R)/P1").name
     (pair('so(4)/so(3)'), 'sl(3)/P1')
+    >>> lh.pair("CP^3"), lh.pair("Fl(1,2;C^3)").name
+    (pair('su(4)/u(3)'), 'su(3)/s(u(1)+u(1)+u(1))')
     >>> lh.pair("so(4)/so(5)")
     Traceback (most recent call last):
     ...
@@ -473,6 +517,8 @@ def pair(name: str) -> Pair:
         result = _affine(tree)
     elif isinstance(tree, Term) and tree.head == "sym" and tree.after:
         result = _sym_pair(tree)
+    elif isinstance(tree, Term) and tree.head == "dual" and not tree.after:
+        result = _dual_pair(tree)
     if result is None:
         raise unknown(str(tree), PAIR_NAMES, "pair")
     return result
@@ -539,20 +585,57 @@ def _sym_pair(tree: Term) -> Pair:
     return _spanned(linear_lie_algebra(matrices, f"so({n})"), rows, tree)  # a stabilizer
 
 
+def _dual_pair(tree: Term) -> Pair:
+    """The dual of a symmetric pair (g, h): the algebra h + m with the other sign of [m, m], over h."""
+    inner = pair("/".join(map(str, tree.items)))
+    rows, k = inner.subalgebra.rows(), inner.subalgebra.dimension
+    if not inner.field.exact or not inner.is_reductive():
+        raise CatalogError(f"{tree}: {inner.name} has no invariant complement, so it is not symmetric")
+    g = inner.algebra.change_of_basis([*rows, *inner.reductive_complement().rows()]) if inner.dimension else None
+    if g is None or any(i >= k and l >= k for i, _, l, _ in g.table):
+        raise CatalogError(f"{tree}: {inner.name} is not a symmetric pair")
+    brackets: dict[tuple[int, int], dict[int, Any]] = {}
+    for i, j, l, c in g.table:
+        brackets.setdefault((i, j), {})[l] = -c if i >= k else c
+    # no check: h + im in the complexification of g
+    return _spanned(
+        LieAlgebra(brackets, g.field, dimension=g.dimension, check=False), first_units(k, g.dimension), tree
+    )
+
+
+def _compact_part(top: Expression, bottom: Expression) -> Pair:
+    """The pair of an algebra and K, its maximal compact subalgebra, or T^r, the maximal torus if it is compact."""
+    algebra, name = algebra_of(top), f"{top}/{bottom}"
+    if str(bottom) == "K":
+        if not algebra.is_semisimple():
+            raise CatalogError(f"{name}: K is the maximal compact subalgebra of a semisimple algebra")
+        inside = algebra.cartan_decomposition().k
+        if inside.algebra.field != algebra.field:
+            raise CatalogError(f"{name}: no maximal compact subalgebra is over {algebra.field.name} in this basis")
+        return Pair(algebra, inside, name=name)
+    inside = algebra.cartan_subalgebra()
+    if algebra.killing_signature() != (0, algebra.dimension, 0) or str(bottom) != f"T^{inside.dimension}":
+        raise CatalogError(f"{name}: T^r is the maximal torus of a compact semisimple algebra of rank r")
+    return Pair(algebra, inside, name=name)
+
+
 def _quotient(tree: Quotient) -> Pair | None:
     top, bottom = tree.top, tree.bottom
     if isinstance(bottom, Term) and bottom.head.startswith("P{"):
         return parabolic_pair(top, bottom) if isinstance(top, Term) else None
+    torus = isinstance(bottom, Term) and re.fullmatch(r"K|T\^\d+", bottom.head) is not None
     plain = _not_linear(top, bottom)
     if plain is not None:
         return _spanned(*plain, tree)
     if not is_linear(top):
-        return None
+        return _compact_part(top, bottom) if torus else None
     matrices = linear_matrices(top)
     algebra = algebra_of(top) if isinstance(top, Term) and is_family(top) else linear_lie_algebra(matrices, str(top))
     rows = _rows(top, bottom, matrices)
     if rows is not None:
         return _spanned(algebra, rows, tree)  # no check: the stabilizer of something, see `preserving`
+    if torus:
+        return _compact_part(top, bottom)
     rows = _included(matrices, bottom)
     return None if rows is None else _spanned(algebra, rows, tree, check=True)
 

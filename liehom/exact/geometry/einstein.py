@@ -160,15 +160,33 @@ def _solutions(metrics: InvariantMetrics, forms: Sequence[ExactMatrix]) -> Itera
         totals = (sum((x * c for x, c in zip(balls, row[1:], strict=True)), 0 * balls[0] + row[0]) for row in diagonals)
         return not any(total < 0 for total in totals)
 
-    for solution in real_solutions(equations, names.atoms, possible):
+    for solution in real_solutions(equations, _determinant_factors(metric), possible):
         field, point = solution.field, (solution.field.one, *solution.values)
         numbers = tuple(
             sum((x * field.convert(c[a]) for x, c in zip(point, columns, strict=True)), field.zero)
             for a in range(metrics.dimension)
         )
         candidate = InvariantMetric(metrics, numbers, field)
-        if candidate.signature()[0] == metrics.split.dimension:
+        if candidate.signature()[0] == metrics.split.dimension and candidate.einstein_constant() is not None:
             yield candidate
+
+
+def _determinant_factors(metric: InvariantMetric) -> list[Any]:
+    """The irreducible factors of the determinant of a metric with parameters, which are poles of the inverse matrix.
+
+    Other polynomials by which elimination has divided may vanish at a metric.
+    """
+    field: Any = metric.field
+    poles: list[Any] = []
+    for entry in metric._raised.ravel():
+        for i, k in entry.powers:
+            for p, e in field.atoms[i].factor()[1]:
+                top, order = entry.numerator, k * int(e)
+                while order and (quotient := field.ring.divide(top, p)) is not None:
+                    top, order = quotient, order - 1
+                if order and p not in poles:
+                    poles.append(p)
+    return poles
 
 
 def _combined(coefficients: Sequence[Any], values: Sequence[RationalFunction]) -> RationalFunction:

@@ -390,6 +390,45 @@ class InvariantMetric:
         columns = [defect(split.corrected(phi)) for phi in split.corrections()]
         return has_solution(field, -defect(split.brackets()), columns)
 
+    def geodesic_vector(self, x: VectorLike) -> ObjectArray | None:
+        """An element X of g whose curve exp(tX) H is the geodesic with initial velocity x, or None if there is none.
+
+        Parameters
+        ----------
+        x : d exact numbers
+            Coordinates of a tangent vector.
+
+        Returns
+        -------
+        array (n,) or None
+            X = x + z with z in h and <[X, Y]_m, x> = 0 for all Y in m, coordinates in the basis of g.
+
+        Notes
+        -----
+        O. Kowalski and L. Vanhecke, Riemannian manifolds with homogeneous geodesics, Boll. Un. Mat. Ital. B 5 (1991).
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> metric = lh.pair("SU(2)/0").invariant_metrics()([1, 0, 0, 2, 0, 3])
+        >>> metric.geodesic_vector([1, 0, 0]), metric.geodesic_vector([1, 1, 0])
+        (array([1, 0, 0], dtype=object), None)
+        """
+        field, split = self._numbers("a homogeneous geodesic"), self.metrics.split
+        v = np.asarray(self._vector(x), dtype=object)
+        lowered, k = v @ self._matrix, len(split.isotropy)
+        columns = [list(lowered @ np.asarray(field.read(a))) for a in split.isotropy]
+        right = field.matrix([list(-np.tensordot(v, split.brackets(), 1) @ lowered)], (1, len(v))).T
+        try:
+            z = field.matrix(columns, (k, len(v))).T.solve(right).T if k else field.zeros(1, 0)
+        except SingularError:
+            return None
+        if not k and not right.is_zero():
+            return None
+        row = field.matrix([list(v)], (1, len(v))) @ field.read(split.complement)
+        total: ObjectArray = np.asarray(row + z @ field.read(split.lower) if k else row)[0]
+        return total
+
     def __repr__(self) -> str:
         return f"<invariant metric {self.parameters} of {self.metrics.pair!r}>"
 

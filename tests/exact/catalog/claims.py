@@ -201,6 +201,14 @@ NOT_FULL = (
     ("sym(4;2,1,1)", 6, 1, "a partial flag"),
     ("sym(4;1,1,1,1)", 6, 0, "no isotropy"),
     ("sym(6;3,3)", 15, 6, "multiplicities (3, 3): a Grassmannian"),
+    ("su(3)/T^2", 8, 2, "full flags of C^3: three planes"),
+    ("su(4)/s(u(2)+u(1)+u(1))", 15, 5, "flags of C^4: reducible"),
+    ("sp(3)/u(1)+sp(2)", 21, 11, "CP^5 over HP^2: reducible"),
+    ("su(3)/u(1;1,2,-3)", 8, 1, "a one-parameter group in seven dimensions"),
+    ("f4/spin(8)", 52, 28, "flags of the octonionic plane: reducible"),
+    ("g2/so(4)", 14, 6, "symmetric space of rank 2"),
+    ("sl(3)/K", 8, 3, "symmetric space of rank 2"),
+    ("dual(sl(3)/so(3))", 8, 3, "symmetric space of rank 2"),
 )
 
 CLAIMS = {row[0]: Claim(*row, full) for rows, full in ((FULL, True), (NOT_FULL, False)) for row in rows}

@@ -1,17 +1,21 @@
-"""Homogeneous spaces of the literature, with the number of their invariant Einstein metrics.
+"""Homogeneous spaces with the number of their invariant Einstein metrics up to scale.
 
-The counts are up to scale. Sources:
+Each row says where its count is from.
 
-- Ziller: W. Ziller, Homogeneous Einstein metrics on spheres and projective spaces, Math. Ann. 259 (1982).
-- Nikonorov: Yu. Nikonorov, Compact homogeneous Einstein 7-manifolds, Geom. Dedicata 109 (2004).
-- Chrysikos-Sakane: The classification of homogeneous Einstein metrics on flag manifolds with b2(M) = 1,
-  arXiv:1206.1306, whose Table 1 collects Kimura, Arvanitoyeorgos, Chrysikos, Sakane.
-- Arvanitoyeorgos: Progress on homogeneous Einstein manifolds and some open problems, arXiv:1605.05886.
-- Sakane: Homogeneous Einstein metrics on flag manifolds, Lobachevskii J. Math. 4 (1999).
-- Alekseevsky-Dotti-Ferraris: Homogeneous Ricci positive 5-manifolds, Pacific J. Math. 175 (1996).
-- Nikonorov-Rodionov: Compact homogeneous Einstein 6-manifolds, Differential Geom. Appl. 19 (2003).
-- Boehm-Kerr: Low-dimensional homogeneous Einstein manifolds, Trans. AMS 358 (2006).
-- Wolf: J. Wolf, The geometry and structure of isotropy irreducible homogeneous spaces, Acta Math. 120 (1968).
+- Schur: the isotropy representation is irreducible over the reals, so there is one invariant metric up to scale, and
+  its Ricci tensor is a multiple of it.
+- Nikonorov: the theorem on simply connected homogeneous Einstein manifolds of dimension 7 in Yu. Nikonorov, Compact
+  homogeneous Einstein 7-manifolds, Geom. Dedicata 109 (2004): all spaces with their numbers of metrics, as A. Rivero
+  lists them from it in the thread "List of compact 7 dimensional Einstein manifolds", physicsforums.com/threads/371804.
+  His i.1 to i.6 are here "i.1" to "i.6", and the symmetric cases "s.1" to "s.5".
+- Boehm-Kerr: Ch. Boehm and M. Kerr, Low-dimensional homogeneous Einstein manifolds, Trans. AMS 358 (2006), p. 1455: the
+  12-dimensional space SU(4)/SU(2)_10 has no homogeneous Einstein metric (after Wang and Ziller), and compact ones of
+  dimension 3 have constant curvature.
+- Belgun: F. Belgun, V. Cortes, A. Haupt, D. Lindemann, Left-invariant Einstein metrics on S^3 x S^3, arXiv:1703.10512,
+  abstract: those with an isotropy group other than Z_2 are the standard and the nearly Kaehler metric.
+- computed: found by this library, and verified by two other computations of Ricci. Counts of flag manifolds are in
+  Table 1 of Chrysikos and Sakane, arXiv:1206.1306, and those of spheres and projective spaces in Ziller, Math. Ann. 259
+  (1982), with which these rows are not compared here.
 """
 
 from collections.abc import Callable, Sequence
@@ -84,6 +88,14 @@ def three_spheres(a: int, b: int, c: int) -> lh.Pair:
     return lh.Pair(g, [[x * t for t in row for x in one] for row in kernel])
 
 
+def product(one: str, other: str) -> lh.Pair:
+    """The product of two spaces with names."""
+    p, q = lh.pair(one), lh.pair(other)
+    left, right = [0] * p.algebra.dimension, [0] * q.algebra.dimension
+    rows = [[*row, *right] for row in p.subalgebra.rows()] + [[*left, *row] for row in q.subalgebra.rows()]
+    return lh.Pair(lh.direct_sum(p.algebra, q.algebra), rows)
+
+
 def ledger_obata(k: int) -> lh.Pair:
     """SU(2)^k/SU(2), the diagonal."""
     g = lh.direct_sum(*[lh.su(2)] * k)
@@ -136,32 +148,37 @@ IRREDUCIBLE = [
 
 # name, pair, number of metrics, number of kinds, source
 EINSTEIN: list[tuple[str, Callable[[], lh.Pair], int, int, str]] = [
-    *((name, named(name), 1, 1, "Wolf") for name in IRREDUCIBLE),
-    ("SU(3)/T^2", lambda: su_flag(1, 1, 1), 4, 2, "Arvanitoyeorgos"),
-    ("SU(4)/S(U(1)U(1)U(2))", lambda: su_flag(1, 1, 2), 4, 3, "Arvanitoyeorgos"),
-    ("SU(5)/S(U(1)U(2)U(2))", lambda: su_flag(1, 2, 2), 4, 3, "Arvanitoyeorgos"),
-    ("Sp(3)/Sp(1)^3", named("sp(3)/sp(1)+sp(1)+sp(1)"), 4, 2, "Arvanitoyeorgos"),
-    ("SO(5)/T^2", lambda: torus(lh.so(5)), 6, 2, "Sakane"),
-    ("SO(5)/U(2)", named("so(5)/u(2)"), 2, 2, "Ziller"),
-    ("SO(7)/U(3)", named("so(7)/u(3)"), 2, 2, "Chrysikos-Sakane"),
-    ("CP^5 = Sp(3)/U(1)Sp(2)", lambda: projective(3), 2, 2, "Ziller"),
-    ("G2/U(2), two summands", lambda: g2_flag(0, 1), 2, 2, "Chrysikos-Sakane"),
-    ("G2/U(2), three summands", lambda: g2_flag(1, 1), 3, 3, "Chrysikos-Sakane"),
-    ("S^5 = SU(3)/SU(2)", named("su(3)/su(2)"), 1, 1, "Ziller"),
-    ("S^7 = SU(4)/SU(3)", named("su(4)/su(3)"), 1, 1, "Ziller"),
-    ("S^7 = Sp(2)/Sp(1)", named("sp(2)/sp(1)"), 2, 2, "Ziller"),
-    ("S^11 = Sp(3)/Sp(2)", named("sp(3)/sp(2)"), 2, 2, "Ziller"),
-    ("S^15 = Spin(9)/Spin(7)", named("spin(9)/spin(7)"), 2, 2, "Ziller"),
-    ("V_2(R^5)", lambda: stiefel(5), 1, 1, "Nikonorov"),
-    ("V_2(R^6)", lambda: stiefel(6), 1, 1, "Arvanitoyeorgos"),
-    ("N(1,2)", lambda: aloff_wallach(1, 2), 2, 2, "Nikonorov"),
-    ("N(1,3)", lambda: aloff_wallach(1, 3), 2, 2, "Nikonorov"),
-    ("M(1,1)", lambda: m_space(1, 1), 1, 1, "Nikonorov"),
-    ("M(2,3)", lambda: m_space(2, 3), 1, 1, "Nikonorov"),
-    ("Q(1,1,1)", lambda: three_spheres(1, 1, 1), 1, 1, "Nikonorov"),
-    ("Q(1,2,3)", lambda: three_spheres(1, 2, 3), 1, 1, "Nikonorov"),
-    ("T(1,2) = S^2 x S^3", lambda: product_of_spheres(1, 2), 1, 1, "Alekseevsky-Dotti-Ferraris"),
-    ("SU(2)", lambda: lh.Pair(lh.su(2), []), 1, 1, "Wolf"),
-    ("SU(2)^3/SU(2)", lambda: ledger_obata(3), 4, 2, "Nikonorov-Rodionov"),
+    *((name, named(name), 1, 1, "Schur") for name in IRREDUCIBLE),
+    ("SU(3)/T^2", lambda: su_flag(1, 1, 1), 4, 2, "computed"),
+    ("SU(4)/S(U(1)U(1)U(2))", lambda: su_flag(1, 1, 2), 4, 3, "computed"),
+    ("SU(5)/S(U(1)U(2)U(2))", lambda: su_flag(1, 2, 2), 4, 3, "computed"),
+    ("Sp(3)/Sp(1)^3", named("sp(3)/sp(1)+sp(1)+sp(1)"), 4, 2, "computed"),
+    ("SO(5)/T^2", lambda: torus(lh.so(5)), 6, 2, "computed"),
+    ("SO(5)/U(2)", named("so(5)/u(2)"), 2, 2, "computed"),
+    ("SO(7)/U(3)", named("so(7)/u(3)"), 2, 2, "computed"),
+    ("CP^5 = Sp(3)/U(1)Sp(2)", lambda: projective(3), 2, 2, "computed"),
+    ("G2/U(2), two summands", lambda: g2_flag(0, 1), 2, 2, "computed"),
+    ("G2/U(2), three summands", lambda: g2_flag(1, 1), 3, 3, "computed"),
+    ("S^5 = SU(3)/SU(2)", named("su(3)/su(2)"), 1, 1, "computed"),
+    ("S^7 = SU(4)/SU(3)", named("su(4)/su(3)"), 1, 1, "Nikonorov s.5, remark"),
+    ("S^7 = Sp(2)/Sp(1)", named("sp(2)/sp(1)"), 2, 2, "Nikonorov i.3"),
+    ("S^11 = Sp(3)/Sp(2)", named("sp(3)/sp(2)"), 2, 2, "computed"),
+    ("S^15 = Spin(9)/Spin(7)", named("spin(9)/spin(7)"), 2, 2, "computed"),
+    ("V_2(R^5)", lambda: stiefel(5), 1, 1, "Nikonorov i.2"),
+    ("V_2(R^6)", lambda: stiefel(6), 1, 1, "computed"),
+    ("N(1,2)", lambda: aloff_wallach(1, 2), 2, 2, "Nikonorov i.6"),
+    ("N(1,3)", lambda: aloff_wallach(1, 3), 2, 2, "Nikonorov i.6"),
+    ("M(1,1)", lambda: m_space(1, 1), 1, 1, "Nikonorov i.4"),
+    ("M(2,3)", lambda: m_space(2, 3), 1, 1, "Nikonorov i.4"),
+    ("Q(1,1,1)", lambda: three_spheres(1, 1, 1), 1, 1, "Nikonorov i.5a"),
+    ("Q(1,2,3)", lambda: three_spheres(1, 2, 3), 1, 1, "Nikonorov i.5a"),
+    ("Q(1,2,0) = T(1,2) x S^2", lambda: three_spheres(1, 2, 0), 1, 1, "Nikonorov i.5b"),
+    ("Q(1,1,0) = V_2(R^4) x S^2", lambda: three_spheres(1, 1, 0), 5, 2, "Nikonorov i.5c"),
+    ("S^5 x S^2", lambda: product("S^5", "S^2"), 1, 1, "Nikonorov s.2"),
+    ("S^4 x S^3", lambda: product("S^4", "S^3"), 1, 1, "Nikonorov s.3"),
+    ("SU(3)/SO(3) x S^2", lambda: product("SU(3)/SO(3)", "S^2"), 1, 1, "Nikonorov s.4"),
+    ("T(1,2) = S^2 x S^3", lambda: product_of_spheres(1, 2), 1, 1, "computed"),
+    ("SU(2)", lambda: lh.Pair(lh.su(2), []), 1, 1, "Boehm-Kerr"),
+    ("SU(2)^3/SU(2)", lambda: ledger_obata(3), 4, 2, "Belgun"),
     ("SU(4)/SU(2)_10", irreducible_su2, 0, 0, "Boehm-Kerr"),
 ]

@@ -138,6 +138,33 @@ def test_invariant_complex_structures_of_flag_manifolds_are_weyl_chambers(pair: 
         assert all(j.field.read(a) @ j == j @ j.field.read(a) for a in reductive_split(pair).isotropy)
 
 
+FLAGS = [
+    (su_flag(1, 1, 1), 2), (su_flag(1, 1, 2), 2), (torus(lh.so(5)), 2), (g2_flag(0, 1), 1), (g2_flag(1, 1), 1),
+    *((lh.pair(name), 1) for name in ("SO(5)/U(2)", "CP^3", "Gr(2,C^4)", "Sp(3)/U(1)Sp(2)")),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("pair", "b2"), FLAGS)
+def test_closed_two_forms_of_flag_manifolds_are_of_type_1_1_for_each_complex_structure(pair: lh.Pair, b2: int) -> None:
+    """h^{1,1} = b_2: the invariant Kaehler forms of a complex structure are a cone in all closed invariant 2-forms."""
+    forms = pair.invariant_symplectic_forms().closed
+    assert len(forms) == b2 == pair.invariant_forms(2).dimension - pair.invariant_forms(2).rank()
+    for j in pair.invariant_complex_structures():
+        for form in (j.field.read(f) for f in forms):
+            assert j.T @ form @ j == form
+
+
+@pytest.mark.parametrize(("pair", "b2"), FLAGS)
+def test_each_complex_structure_has_one_kaehler_einstein_metric(pair: lh.Pair, b2: int) -> None:
+    """Matsushima's theorem, in the list of all Einstein metrics: J is parallel for just one of them."""
+    found = pair.invariant_metrics().einstein()
+    assert found.complete
+    connections = [m.metric.connection() for m in found if m.metric.kaehler_form() is not None]
+    for j in map(np.asarray, pair.invariant_complex_structures()):
+        parallel = [all((a.T @ j == j @ a.T).all() for a in connection) for connection in connections]
+        assert parallel.count(True) == 1
+
+
 def test_almost_complex_structures_are_signs_on_the_summands() -> None:
     assert len(almost_complex_structures(reductive_split(su_flag(1, 1, 1)))) == 8
     assert almost_complex_structures(reductive_split(lh.pair("so(4)/so(3)"))) == []

@@ -29,6 +29,15 @@ OTHERS = [  # symmetric spaces with their holonomy algebra, which is h acting on
     ("su(2,1)/u(2)", 4),
     ("sl(3)/so(3)", 3),
     ("sp(4,R)/u(2)", 4),
+    # with those above, the classical families of compact symmetric spaces to dimension 12, without groups
+    *((f"Gr(2,{n})", 1 + (n - 2) * (n - 3) // 2) for n in (6, 7, 8)),
+    ("Gr(3,7)", 9),
+    ("Gr(2,C^5)", 12),
+    ("so(8)/u(4)", 16),
+    ("su(2)/so(2)", 1),
+    ("sp(1)/u(1)", 1),
+    ("so(4)/u(2)", 1),  # the 2-sphere: su(2) acts trivially
+    *((f"dual({name})", k) for name, k in [("so(7)/so(4)+so(3)", 9), ("sp(3)/u(3)", 9), ("su(4)/sp(2)", 10)]),
 ]
 SYMMETRIC = [(name, dimension) for name, _, dimension in SPHERES + PROJECTIVE + QUATERNIONIC] + OTHERS
 
@@ -81,7 +90,16 @@ def test_quaternionic_projective_space_has_ricci_4n_plus_8(name: str, n: int, ho
 @pytest.mark.parametrize(("name", "holonomy"), SYMMETRIC, ids=[x[0] for x in SYMMETRIC])
 def test_symmetric_space_has_the_curvature_of_the_closed_formula(name: str, holonomy: int) -> None:
     """R(X, Y) Z = -[[X, Y], Z], Ric = -B/2, and the holonomy algebra is h."""
-    pair = lh.pair(name)
+    assert_symmetric(lh.pair(name), holonomy)
+
+
+@pytest.mark.parametrize("g", [lh.su(2), lh.su(3), lh.so(5), lh.sl(2)])
+def test_group_is_a_symmetric_space_with_holonomy_g(g: lh.LieAlgebra) -> None:
+    diagonal = [[int(i == j) for i in range(g.dimension)] * 2 for j in range(g.dimension)]
+    assert_symmetric(lh.Pair(lh.direct_sum(g, g), diagonal), g.dimension)
+
+
+def assert_symmetric(pair: lh.Pair, holonomy: int) -> None:
     assert pair.is_symmetric()
     metrics = pair.invariant_metrics()
     metric = metrics([1])
