@@ -27,7 +27,7 @@ ORDER: dict[str, list[str]] = {
         "liehom.cli": "completion guard help inputs atlas_command integration objects plot_command reproduce app",
         "liehom.exact": "scalars algebra representations pauli orbits geometry fullness catalog",
         "liehom.exact.algebra": "core linear roots constructions structure involutions",
-        "liehom.exact.algebra.constructions": "classical family sums families",
+        "liehom.exact.algebra.constructions": "classical family sums families low_dimensional",
         "liehom.exact.algebra.core": "structure_constants jacobi tables lie_algebra subalgebra homomorphism",
         "liehom.exact.algebra.involutions": (
             "cartan_involution rational_involution field_involutions cartan_decomposition parabolic"
