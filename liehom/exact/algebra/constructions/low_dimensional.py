@@ -21,7 +21,7 @@ from liehom.base.errors import InputError, displayed
 from liehom.base.typing import ScalarLike
 from liehom.exact.algebra.core.lie_algebra import LieAlgebra
 from liehom.exact.algebra.core.tables import field_of_values
-from liehom.exact.scalars.field import Scalar
+from liehom.exact.scalars.field import Field, Scalar
 
 TABLE = """
 A1,1
@@ -118,7 +118,7 @@ _COMPARE = {
 
 
 @final
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Row:
     """A class of the table; coefficients are affine in the parameters, {parameter or "": integer}."""
 
@@ -144,24 +144,25 @@ class Row:
         either = self.condition.split(" or ") if self.condition else []
         return not either or any(all(map(chain, text.split(" and "))) for text in either)
 
-    def algebra(self, *parameters: ScalarLike) -> LieAlgebra:
-        """The algebra with given parameters; `InputError` outside the range of the table."""
+    def name(self, values: Sequence[Scalar], field: Field) -> str:
+        """The name with parameters, such as 'A4,2(1/2)'."""
+        shown = f"({','.join(map(field.show, values))})" if values else ""
+        return f"A{self.dimension},{self.number}{shown}"
+
+    def algebra(self, values: Sequence[Scalar], field: Field) -> LieAlgebra:
+        """The algebra with given parameters in a field; `InputError` outside the range of the table."""
         head = f"A{self.dimension},{self.number}"
-        if len(parameters) != len(self.parameters):
+        if len(values) != len(self.parameters):
             wanted = f", {self.condition}" if self.condition else ""
-            raise InputError(f"{head} has {len(self.parameters)} parameter(s){wanted}; got {len(parameters)}")
-        field = field_of_values(parameters)
-        values = [field.convert(x) for x in parameters]
-        shown = ",".join(map(field.format, values))
+            raise InputError(f"{head} has {len(self.parameters)} parameter(s){wanted}; got {len(values)}")
+        name = self.name(values, field)
         if not self.holds(values):
-            message = f"is not in the table, which has {self.condition}; another name denotes it"
-            raise InputError(f"{head}({shown}) {message}")
+            raise InputError(f"{name} is not in the table, which has {self.condition}; another name denotes it")
         known = dict(zip(self.parameters, values, strict=True)) | {"": field.one}
         brackets: dict[tuple[int, int], dict[int, Scalar]] = {}
         for i, j, m, c in self.brackets:
             brackets.setdefault((i, j), {})[m] = sum((known[x] * factor for x, factor in c.items()), field.zero)
         basis = [f"e{i + 1}" for i in range(self.dimension)]
-        name = f"{head}({shown})" if values else head
         return LieAlgebra(brackets, field, dimension=self.dimension, basis=basis, name=name)
 
 
@@ -226,7 +227,8 @@ def low_dimensional(n: int, k: int, *parameters: ScalarLike) -> LieAlgebra:
         last = max((j for i, j in rows() if i == n), default=0)
         known = f"the classes of dimension {n} are A{n},1 to A{n},{last}" if last else "dimensions go up to 6"
         raise InputError(f"there is no Lie algebra A{displayed(n)},{displayed(k)} here: {known}")
-    return rows()[n, k].algebra(*parameters)
+    field = field_of_values(parameters)
+    return rows()[n, k].algebra([field.convert(x) for x in parameters], field)
 
 
 if low_dimensional.__doc__:  # python -OO leaves docstrings out
