@@ -18,7 +18,7 @@ from typing import final
 
 from liehom.exact.algebra.core.lie_algebra import LieAlgebra
 from liehom.exact.algebra.core.structure_constants import StructureConstants
-from liehom.exact.algebra.core.subalgebra import complement_rows, products
+from liehom.exact.algebra.core.subalgebra import complement_rows
 from liehom.exact.algebra.structure.centroid import exact_field
 from liehom.exact.scalars.exact_field import ExactField, ExactMatrix
 from liehom.exact.scalars.extension import Extension, adjoin_root
@@ -26,7 +26,7 @@ from liehom.exact.scalars.field import Scalar
 from liehom.exact.scalars.polynomial import Polynomial
 from liehom.exact.scalars.subspaces import echelon_quotient
 
-MAX_SUBSPACES = 24
+MAX_SUBSPACES = 16
 MAX_TERMS = 600  # of an equation
 MAX_GUESSES = 400  # values that are tried in one search
 
@@ -53,30 +53,32 @@ class Flags:
     origin: list[tuple[int, int]]  # (position, dimension) after each operation
 
 
-def characteristic_subspaces(algebra: LieAlgebra, seeds: Sequence[ExactMatrix] = ()) -> Flags:
-    """Subspaces closed, up to a number, under brackets and under {x : [x, T] in S}, from 0, g and the seeds."""
+def characteristic_subspaces(
+    algebra: LieAlgebra, seeds: Sequence[ExactMatrix] = (), like: Flags | None = None
+) -> Flags | None:
+    """Subspaces closed, up to a number, under brackets and under {x : [x, T] in S}, from 0, g and the seeds.
+
+    The result is None if they do not correspond to the subspaces `like` of another algebra.
+    """
     field, n = exact_field(algebra, "isomorphisms"), algebra.dimension
     flags = Flags([], [])
     position: dict[ExactMatrix, int] = {}
-
-    def add(space: ExactMatrix) -> None:
-        at = position.setdefault(space, len(flags.spaces))
-        if at == len(flags.spaces):
-            flags.spaces.append(space)
-        flags.origin.append((at, space.nrows))
-
-    for seed in (field.zeros(0, n), field.identity(n), *seeds):
-        add(seed.row_space())
-    current = 0
-    while current < len(flags.spaces) < MAX_SUBSPACES:
-        for other in range(current + 1):
-            first, second = flags.spaces[current], flags.spaces[other]
-            add(products(algebra, first, second).row_space())
-            add(transporter(algebra, first, second))
-            if other < current:
-                add(transporter(algebra, second, first))
-        current += 1
-    return flags
+    pending = [seed.row_space() for seed in (field.zeros(0, n), field.identity(n), *seeds)]
+    current = other = 0
+    while True:
+        for space in pending:
+            at = position.setdefault(space, len(flags.spaces))
+            if at == len(flags.spaces):
+                flags.spaces.append(space)
+            flags.origin.append((at, space.nrows))
+            if like is not None and like.origin[len(flags.origin) - 1] != flags.origin[-1]:
+                return None
+        if len(flags.spaces) >= MAX_SUBSPACES or current == len(flags.spaces):
+            return flags
+        first, second = flags.spaces[current], flags.spaces[other]
+        pending = [algebra.table.bracket_rows(first, second).row_space(), transporter(algebra, first, second)]
+        pending += [transporter(algebra, second, first)] if other < current else []
+        current, other = (current, other + 1) if other < current else (current + 1, 0)
 
 
 def transporter(algebra: LieAlgebra, source: ExactMatrix, target: ExactMatrix) -> ExactMatrix:
@@ -101,17 +103,15 @@ def find_isomorphism(
     target: LieAlgebra,
     seeds: Sequence[tuple[ExactMatrix, ExactMatrix]] = (),
     cosets: Mapping[int, tuple[ExactMatrix, ExactMatrix]] | None = None,
-    *,
-    flags: Flags | None = None,
 ) -> ExactMatrix | None:
     """Rows f(e_i) of an isomorphism that maps seeds to seeds, or None if none was found.
 
     A pair (x, U) in `cosets` bounds f(e_i) to x + U. Raises `LargerFieldError` if a real root is missing.
     """
     field, n = exact_field(source, "isomorphisms"), source.dimension
-    flags = flags or characteristic_subspaces(source, [s for s, _ in seeds])
-    matched = characteristic_subspaces(target, [t for _, t in seeds])
-    if flags.origin != matched.origin:
+    flags = characteristic_subspaces(source, [s for s, _ in seeds])
+    matched = characteristic_subspaces(target, [t for _, t in seeds], flags)
+    if flags is None or matched is None:
         return None
     basis = _adapted(matched.spaces)
     inverse = basis.inverse()

@@ -131,7 +131,7 @@ def _named(algebra: LieAlgebra) -> _Part:
         _undecided(algebra)
     for row, values, seeds, cosets in options:
         source = row.algebra(values, field)
-        images = find_isomorphism(source, algebra, seeds, cosets, flags=None if seeds else _flags(row, values, field))
+        images = find_isomorphism(source, algebra, seeds, cosets)
         if images is not None:
             return _Part(row, values, images)
     _undecided(algebra)
@@ -161,17 +161,20 @@ Option = tuple[
 # -- nilpotent algebras --------------------------------------------------------------------------------------
 def _nilpotent_candidates(algebra: LieAlgebra) -> Iterator[Option]:
     field = exact_field(algebra, "names of algebras")
-    flags = characteristic_subspaces(algebra)
     for (n, _), row in rows().items():
-        if n == algebra.dimension and _sample(row).is_nilpotent():
+        if n == algebra.dimension and _kind(_sample(row)) == _kind(algebra):
             for signs in product(SIGNS, repeat=len(row.parameters)):
                 values = tuple(field.one * sign for sign in signs)
-                if row.holds(values) and _flags(row, values, field).origin == flags.origin:
+                if row.holds(values):
                     yield row, values, (), None
 
 
-def _flags(row: Row, values: tuple[Scalar, ...], field: ExactField) -> Flags:
-    return characteristic_subspaces(row.algebra(values, field))
+@cache
+def _kind(algebra: LieAlgebra) -> tuple[int, ...]:
+    """Dimensions of the derived algebra, the nilradical and its series, the same for all parameters of a row."""
+    nilradical = algebra.nilradical().as_algebra()
+    series = nilradical.lower_central_series(), nilradical.upper_central_series()
+    return algebra.dimension, *(len(terms) for terms in series), *(h.dimension for terms in series for h in terms)
 
 
 @cache
@@ -314,8 +317,9 @@ def _solvable_candidates(algebra: LieAlgebra) -> Iterator[Option]:
         spaces.append(_Space(zero, None, weights.central, ()))
     pairs = [s for s in weights.spaces if s.imaginary is not None]
     counts = sum(s.rows.nrows for s in spaces), sum(s.rows.nrows // 2 for s in pairs)
+    kind = _kind(algebra)
     for (n, _), row in rows().items():
-        if n != algebra.dimension or not _sample(row).is_solvable() or _sample(row).is_nilpotent():
+        if n != algebra.dimension or _kind(_sample(row)) != kind or _sample(row).radical().dimension < n:
             continue
         pattern = _pattern(row)
         if len(pattern.acting) != len(zero) or (len(pattern.real), len(pattern.pairs)) != counts:
