@@ -75,6 +75,7 @@ from liehom.exact.algebra.structure.cohomology import Cohomology as Cohomology
 from liehom.exact.algebra.structure.derivations import Derivations as Derivations
 from liehom.exact.algebra.structure.ideals import Place as Place
 from liehom.exact.algebra.structure.levi import LeviDecomposition as LeviDecomposition
+from liehom.exact.algebra.structure.naming import Identification as Identification
 from liehom.exact.algebra.structure.root_spaces import (
     RootSpace as RootSpace,
     RootSpaceDecomposition as RootSpaceDecomposition,

@@ -2,9 +2,9 @@
 
 An isomorphism maps each characteristic subspace (series, centralizers, what these generate) onto the subspace with the
 same description. This bounds the image of each basis element, and the numbers of subspaces with their dimensions are
-invariants. The brackets are then polynomial equations in the remaining entries. They are nearly triangular: one equation
-after the other determines a variable, a small value is given to a variable of a torus, and a real root is adjoined if an
-equation in one variable has no root in the field. The search proposes; the caller proves the map it returns.
+invariants. The brackets are then polynomial equations in the remaining entries. They are nearly triangular: equations
+determine one variable after the other, a variable of a torus gets a small value, and a real root is adjoined if an
+equation in one variable has no root in the field. The search proposes; the caller proves the map that it returns.
 """
 
 from __future__ import annotations
@@ -219,7 +219,6 @@ class _State:
         if x in self.nonzero:
             units.append(numerator)
         return _State([_substituted(f, *step) for f in self.equations], units, self.nonzero - {x}, (*self.solved, step))
-
 
     def with_value(self, x: int, value: Scalar, one: Scalar) -> _State:
         """The state with a number for a variable."""

@@ -8,7 +8,7 @@ and for the map on a complement of the nilradical in c. `find_isomorphism` decid
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from itertools import product
@@ -19,11 +19,10 @@ from liehom.exact.algebra.constructions.low_dimensional import Row, rows
 from liehom.exact.algebra.constructions.sums import direct_sum
 from liehom.exact.algebra.core.homomorphism import Homomorphism
 from liehom.exact.algebra.core.lie_algebra import LieAlgebra
-from liehom.exact.algebra.core.subalgebra import complement_rows
+from liehom.exact.algebra.core.subalgebra import Subalgebra, complement_rows
 from liehom.exact.algebra.structure.centroid import exact_field
 from liehom.exact.algebra.structure.ideals import over_extension
 from liehom.exact.algebra.structure.isomorphisms import (
-    Flags,
     LargerFieldError,
     characteristic_subspaces,
     find_isomorphism,
@@ -36,6 +35,7 @@ from liehom.exact.scalars.polynomial import Polynomial
 from liehom.exact.scalars.rational import QQ
 
 MAX_DEGREE = 24  # of the number field of a map
+MAX_SEARCHED = 8  # dimension of algebras without a name between which a map is sought
 SIGNS = (1, -1, 0)  # values of a parameter that the weights do not determine
 
 Weight = tuple[Scalar, ...]  # values on a basis of a complement of the nilradical in a Cartan subalgebra
@@ -49,7 +49,7 @@ class Identification:
     Attributes
     ----------
     name : str
-        A catalogue name such as 'A4,5(-1,1/2)', or 'A3,1+A1,1' for a direct sum.
+        A catalogue name such as 'A4,5(-1,1/2)', or 'A3,1+R' for a direct sum.
     parameters : tuple of numbers
         The parameters of all summands, in their order.
     homomorphism : Homomorphism
@@ -58,7 +58,7 @@ class Identification:
     Examples
     --------
     >>> import liehom as lh
-    >>> found = lh.oscillator(1).identify()
+    >>> found = lh.algebra.oscillator(1).identify()
     >>> found.name, found.homomorphism.is_isomorphism()
     ('A4,10', True)
     """
@@ -92,12 +92,15 @@ def _identified(algebra: LieAlgebra) -> tuple[Identification, Extension]:
             parts = _parts(larger)
         except LargerFieldError as error:
             up = up.then(error.extension)
-            if up.field.degree > MAX_DEGREE:
-                raise UndecidedError(f"a map needs a field of degree {up.field.degree} over QQ, more than {MAX_DEGREE}")
+            if (degree := up.field.degree) > MAX_DEGREE:
+                message = f"a map needs a field of degree {degree} over QQ, more than {MAX_DEGREE}"
+                raise UndecidedError(message) from None
             continue
         field = up.field
         source = direct_sum(*(part.row.algebra(part.values, field) for part in parts)) if parts else algebra
-        name = "+".join(part.row.name(part.values, field) for part in parts) or "0"
+        flat = sum(part.row.dimension == 1 for part in parts)
+        names = [part.row.name(part.values, field) for part in parts if part.row.dimension > 1]
+        name = "+".join([*names, *([f"R^{flat}" if flat > 1 else "R"] if flat else [])]) or "0"
         named = LieAlgebra(source.table, basis=source.basis_names, name=name, check=False)  # checked as a sum of rows
         images = field.stack_rows([part.images for part in parts], algebra.dimension)
         values = tuple(value for part in parts for value in part.values)
@@ -138,7 +141,7 @@ def _named(algebra: LieAlgebra) -> _Part:
 
 
 def _undecided(algebra: LieAlgebra) -> NoReturn:
-    known = "; ".join(f"{name} {value}" for name, value in invariants(algebra).items())
+    known = "; ".join(f"{name} {of(algebra)}" for name, of in _INVARIANTS.items() if of is not _traces)
     raise UndecidedError(f"no name is known for an indecomposable ideal: {known}")
 
 
@@ -224,7 +227,7 @@ def _weights(algebra: LieAlgebra) -> _Weights:
     action, factors = best
     adjoint = [algebra.ad(acting.select(rows=[b])).T for b in range(acting.nrows)]
     spaces = [_space(action, adjoint, f, m, field.identity(n)) for f, m in sorted(factors, key=lambda p: p[0].degree)]
-    return _Weights(acting, central, [s for s in spaces if any(s.real) or s.imaginary])
+    return _Weights(acting, central, [s for s in spaces if s.imaginary or any(x != 0 for x in s.real)])
 
 
 def _space(action: ExactMatrix, adjoint: list[ExactMatrix], f: Polynomial, m: int, one: ExactMatrix) -> _Space:
@@ -324,14 +327,18 @@ def _solvable_candidates(algebra: LieAlgebra) -> Iterator[Option]:
         pattern = _pattern(row)
         if len(pattern.acting) != len(zero) or (len(pattern.real), len(pattern.pairs)) != counts:
             continue
-        options: dict[tuple[object, ...], tuple[tuple[Scalar, ...], list[int], list[tuple[int, int]], ExactMatrix]] = {}
-        for at, across in product(_assignments(spaces, len(pattern.real), 1), _assignments(pairs, len(pattern.pairs), 2)):
-            for signs in product((1, -1), repeat=len(across)):
-                turned = list(zip(across, signs, strict=True))
-                match = _matched(row, pattern, field, [spaces[k] for k in at], [(pairs[k], s) for k, s in turned])
-                if match is not None:
-                    for values in _completed(row, pattern, match[0], field):
-                        options.setdefault((values, tuple(at), tuple(across)), (values, at, turned, match[1]))
+        options: dict[tuple[object, ...], tuple[Weight, list[int], list[tuple[int, int]], ExactMatrix]] = {}
+        lines, planes = (
+            list(_assignments(s, *size)) for s, size in ((spaces, (counts[0], 1)), (pairs, (counts[1], 2)))
+        )
+        for at, across, signs in product(lines, planes, product((1, -1), repeat=counts[1])):
+            turned = list(zip(across, signs, strict=True))
+            match = _matched(row, pattern, field, [spaces[k] for k in at], [(pairs[k], s) for k, s in turned])
+            if match is None:
+                continue
+            known, matrix = match
+            for values in _completed(row, pattern, known, field):
+                options.setdefault((values, tuple(at), tuple(across)), (values, at, turned, matrix))
         for values, at, turned, matrix in sorted(options.values(), key=lambda o: o[0], reverse=True):
             yield row, values, *_bounds(pattern, n, weights, matrix, [
                 *(([i], spaces[k].rows) for (i, _), k in zip(pattern.real, at, strict=True)),
@@ -391,7 +398,9 @@ def _matched(
     return (dict(zip(unknown, solution[k * k :], strict=True)), matrix) if matrix.rank() == k else None
 
 
-def _completed(row: Row, pattern: _Pattern, known: dict[str, Scalar], field: ExactField) -> Iterator[tuple[Scalar, ...]]:
+def _completed(
+    row: Row, pattern: _Pattern, known: dict[str, Scalar], field: ExactField
+) -> Iterator[tuple[Scalar, ...]]:
     """The parameters in the range of the table, with signs for those that the weights do not show."""
     rest = [x for x in row.parameters if x not in pattern.free]
     for signs in product(SIGNS, repeat=len(rest)):
@@ -447,18 +456,115 @@ def _of_square_length(form: ExactMatrix) -> tuple[ExactMatrix, Scalar]:
 
 
 # -- invariants and isomorphisms -----------------------------------------------------------------------------
-def invariants(algebra: LieAlgebra) -> dict[str, str]:
-    """Invariants by name, as strings, in the order in which they are compared."""
-    def dimensions(series: Sequence[object]) -> str:
-        return " > ".join(str(getattr(term, "dimension", "")) for term in series)
+def _dimensions(series: Sequence[Subalgebra]) -> str:
+    return " > ".join(str(term.dimension) for term in series)
 
-    return {
-        "dimension": str(algebra.dimension),
-        "derived series": dimensions(algebra.derived_series()),
-        "lower central series": dimensions(algebra.lower_central_series()),
-        "upper central series": dimensions(algebra.upper_central_series()),
-        "dimension of the nilradical": str(algebra.nilradical().dimension),
-        "signature of the Killing form": str(algebra.killing_signature()),
-        "dimension of Der": str(algebra.derivations().dimension),
-        "dimensions of characteristic subspaces": str(characteristic_subspaces(algebra).origin),
-    }
+
+def _traces(algebra: LieAlgebra) -> tuple[tuple[int, int], ...]:
+    flags = characteristic_subspaces(algebra)
+    return tuple(flags.origin) if flags else ()
+
+
+_INVARIANTS: dict[str, Callable[[LieAlgebra], object]] = {
+    "dimension": lambda g: g.dimension,
+    "derived series": lambda g: _dimensions(g.derived_series()),
+    "lower central series": lambda g: _dimensions(g.lower_central_series()),
+    "upper central series": lambda g: _dimensions(g.upper_central_series()),
+    "dimension of the nilradical": lambda g: g.nilradical().dimension,
+    "Levi factor": lambda g: g.real_form(),
+    "signature of the Killing form": lambda g: g.killing_signature(),
+    "number of outer derivations": lambda g: g.derivations().outer_dimension,
+    "dimensions of characteristic subspaces": _traces,
+}
+"""Invariants under isomorphisms over the reals, the quick ones first."""
+
+
+def differing_invariant(first: LieAlgebra, second: LieAlgebra) -> str | None:
+    """Implements `LieAlgebra.differing_invariant`."""
+    first, second = over_one_field(first, second)
+    for name, invariant in _INVARIANTS.items():
+        one, two = invariant(first), invariant(second)
+        if one != two:
+            shown = "" if invariant is _traces else f": {one} and {two}"
+            return f"{name}{shown}"
+    if first.is_semisimple():
+        return None
+    try:
+        names = identify(first).name, identify(second).name
+    except UndecidedError:
+        return None
+    return None if names[0] == names[1] else f"name: {names[0]} and {names[1]}"
+
+
+def isomorphism(first: LieAlgebra, second: LieAlgebra) -> Homomorphism | None:
+    """Implements `LieAlgebra.isomorphism`."""
+    first, second = over_one_field(first, second)
+    if first == second:
+        return Homomorphism(first, second, first.field.identity(first.dimension), check=False)  # equal tables
+    if first.dimension != second.dimension or differing_invariant(first, second):
+        return None
+    try:
+        one, up = _identified(first)
+        two, further = _identified(over_extension(second, up))
+    except UndecidedError:
+        return _searched(first, second)
+    matrix = further.matrix(as_exact(one.homomorphism.matrix))
+    source = over_extension(over_extension(first, up), further)
+    return Homomorphism(source, two.homomorphism.target, as_exact(two.homomorphism.matrix) @ matrix.inverse())
+
+
+def _searched(first: LieAlgebra, second: LieAlgebra) -> Homomorphism:
+    """An isomorphism of algebras that have no name here; `UndecidedError` if none was found."""
+    up = trivial_extension(exact_field(first, "isomorphisms"))
+    while first.dimension <= MAX_SEARCHED and up.field.degree <= MAX_DEGREE and not first.is_semisimple():
+        source, target = over_extension(first, up), over_extension(second, up)
+        try:
+            rows_of_map = find_isomorphism(source, target)
+        except LargerFieldError as error:
+            up = up.then(error.extension)
+            continue
+        if rows_of_map is None:
+            break
+        return Homomorphism(source, target, rows_of_map.T)
+    raise UndecidedError(f"no isomorphism from {first!r} to {second!r} was found, and no invariant that differs")
+
+
+def is_isomorphic(first: LieAlgebra, second: LieAlgebra) -> bool:
+    """Implements `LieAlgebra.is_isomorphic`."""
+    first, second = over_one_field(first, second)
+    if first.dimension != second.dimension:
+        return False
+    if first == second:
+        return True
+    forms, rest = zip(*map(_without_semisimple_ideals, (first, second)), strict=True)
+    if forms[0] != forms[1]:
+        return False
+    return rest[0].dimension == 0 or isomorphism(*rest) is not None
+
+
+def _without_semisimple_ideals(algebra: LieAlgebra) -> tuple[str, LieAlgebra]:
+    """The real form of the largest semisimple ideal that is a direct summand, and the sum of the other ideals."""
+    if algebra.is_semisimple():
+        return algebra.real_form(), LieAlgebra({}, algebra.field, dimension=0)
+    if algebra.is_solvable():
+        return "0", algebra
+    ideals = [ideal.as_algebra() for ideal in algebra.direct_sum_decomposition()]
+    simple = [ideal for ideal in ideals if ideal.is_semisimple()]
+    form = direct_sum(*simple).real_form() if simple else "0"
+    return form, direct_sum(*(ideal for ideal in ideals if not ideal.is_semisimple()))
+
+
+def over_one_field(first: LieAlgebra, second: LieAlgebra) -> tuple[LieAlgebra, LieAlgebra]:
+    """Two algebras over the larger of their exact fields; `InputError` if neither contains the other."""
+    for algebra in (first, second):
+        if not isinstance(algebra, LieAlgebra):
+            raise InputError(f"expected a Lie algebra to compare with, such as lh.so(3); got {displayed(algebra)}")
+        exact_field(algebra, "isomorphisms")
+    if first.field == second.field:
+        return first, second
+    if min(first.field.degree, second.field.degree) > 1:
+        fields = f"{first.field.name} and {second.field.name}"
+        raise InputError(f"the algebras are over {fields}; bring them to one field by over()")
+    return first.over(second.field) if first.field.degree == 1 else first, (
+        second.over(first.field) if second.field.degree == 1 else second
+    )
