@@ -16,6 +16,7 @@ from dataclasses import dataclass, field as default, replace
 from itertools import combinations, permutations
 from typing import final
 
+from liehom.base.errors import UndecidedError
 from liehom.exact.algebra.core.lie_algebra import LieAlgebra
 from liehom.exact.algebra.core.structure_constants import StructureConstants
 from liehom.exact.algebra.core.subalgebra import complement_rows
@@ -28,7 +29,7 @@ from liehom.exact.scalars.subspaces import echelon_quotient
 
 MAX_SUBSPACES = 16
 MAX_TERMS = 600  # of an equation
-MAX_GUESSES = 400  # values that are tried in one search
+MAX_WORK = 60_000  # terms of the equations of all steps of one search
 
 Monomial = tuple[int, ...]  # variables in increasing order, repeated by their exponents
 Terms = dict[Monomial, Scalar]
@@ -104,9 +105,10 @@ def find_isomorphism(
     seeds: Sequence[tuple[ExactMatrix, ExactMatrix]] = (),
     cosets: Mapping[int, tuple[ExactMatrix, ExactMatrix]] | None = None,
 ) -> ExactMatrix | None:
-    """Rows f(e_i) of an isomorphism that maps seeds to seeds, or None if none was found.
+    """Rows f(e_i) of an isomorphism that maps seeds to seeds, or None if it is proved that there is none.
 
-    A pair (x, U) in `cosets` bounds f(e_i) to x + U. Raises `LargerFieldError` if a real root is missing.
+    A pair (x, U) in `cosets` bounds f(e_i) to x + U. Raises `LargerFieldError` if a real root is missing, and
+    `UndecidedError` if the search left out cases.
     """
     field, n = exact_field(source, "isomorphisms"), source.dimension
     flags = characteristic_subspaces(source, [s for s, _ in seeds])
@@ -235,7 +237,8 @@ class _Unknowns:
     images: list[list[Terms]] = default(default_factory=list)
     usual: list[int] = default(default_factory=list)  # a value that makes the map close to a permutation
     blocks: dict[tuple[int, ...], list[list[int]]] = default(default_factory=dict)  # variables of invertible blocks
-    guesses: int = 0
+    work: int = 0
+    proved: bool = True  # no case was left out in the search
     thorough: bool = False  # distinguish whether a coefficient is 0, rather than guess
 
     def add_image(self, start: ExactMatrix, room: ExactMatrix, lower: ExactMatrix, key: tuple[int, ...]) -> None:
@@ -254,21 +257,23 @@ class _Unknowns:
         self.images.append(image)
 
     def solve(self, equations: list[Terms]) -> ExactMatrix | None:
-        """The rows f(e_i) of an invertible solution, or None if none was found."""
+        """The rows f(e_i) of an invertible solution, or None if there is none."""
         missing: list[Polynomial] = []
         one = self.field.one
         units = [_determinant(block, one) for block in self.blocks.values() if 0 < len(block) == len(block[0]) <= 3]
         for self.thorough in (False, True):
-            self.guesses = 0
+            self.work, self.proved = 0, True
             for values in self._solutions(_State(equations, units, frozenset()), missing):
                 rows = [[self._at(entry, values) for entry in image] for image in self.images]
                 matrix = self.field.matrix(rows, (self.n, self.n))
                 if matrix.rank() == self.n:
                     return matrix
-            if missing:
+            if missing or self.proved:
                 break
         if missing:
             raise LargerFieldError(adjoin_root(min(missing, key=lambda f: f.degree), 0)[0])
+        if not self.proved:
+            raise UndecidedError("the search for an isomorphism left out cases")
         return None
 
     def _at(self, terms: Terms, values: Mapping[int, Scalar]) -> Scalar:
@@ -285,7 +290,9 @@ class _Unknowns:
             if not state.equations:
                 yield from self._completed(state)
                 return
-            if any(len(f) > MAX_TERMS for f in state.equations):
+            self.work += sum(map(len, state.equations))
+            if self.work > MAX_WORK or any(len(f) > MAX_TERMS for f in state.equations):
+                self.proved = False
                 return
             step = self._elimination(state)
             if step is not None:
@@ -297,9 +304,6 @@ class _Unknowns:
         else:
             return
         for branch in self._branches(state, missing):
-            if self.guesses > MAX_GUESSES:
-                return
-            self.guesses += 1
             yield from self._solutions(branch, missing)
 
     def _simplify(self, state: _State) -> bool:
@@ -375,6 +379,7 @@ class _Unknowns:
             return
         simple = {x for monomial in state.equations[0] for x in monomial} & state.nonzero
         x = min(simple or {x for f in state.equations for monomial in f for x in monomial})
+        self.proved = False
         first = self.usual[x]
         small = [first, 1 - first, -1, 2] if x not in state.nonzero else [1, -1, 2]
         yield from (state.with_value(x, one * value, one) for value in small)
@@ -394,6 +399,7 @@ class _Unknowns:
         """Values of all variables, with free ones at first near a permutation and then at random."""
         rng = random.Random(self.n)
         determined = {x for x, _, _ in state.solved}
+        self.proved &= len(determined) == len(self.usual)
         for attempt in range(6):
             values: dict[int, Scalar] = {}
             for x, value in enumerate(self.usual):

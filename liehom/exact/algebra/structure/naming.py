@@ -9,7 +9,7 @@ and for the map on a complement of the nilradical in c. `find_isomorphism` decid
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from itertools import product
 from typing import NoReturn, final
@@ -76,6 +76,7 @@ class _Part:
     row: Row
     values: tuple[Scalar, ...]
     images: ExactMatrix
+    largest: bool = True  # it is proved that no larger parameters give an isomorphic algebra
 
 
 def identify(algebra: LieAlgebra) -> Identification:
@@ -83,8 +84,8 @@ def identify(algebra: LieAlgebra) -> Identification:
     return _identified(algebra)[0]
 
 
-def _identified(algebra: LieAlgebra) -> tuple[Identification, Extension]:
-    """The name of an algebra, and the extension of its field over which the map is defined."""
+def _identified(algebra: LieAlgebra) -> tuple[Identification, Extension, list[_Part]]:
+    """The name of an algebra, the extension of its field over which the map is defined, and the summands."""
     up = trivial_extension(exact_field(algebra, "names of algebras"))
     while True:
         larger = over_extension(algebra, up)
@@ -104,7 +105,7 @@ def _identified(algebra: LieAlgebra) -> tuple[Identification, Extension]:
         named = LieAlgebra(source.table, basis=source.basis_names, name=name, check=False)  # checked as a sum of rows
         images = field.stack_rows([part.images for part in parts], algebra.dimension)
         values = tuple(value for part in parts for value in part.values)
-        return Identification(name, values, Homomorphism(named, larger, images.T)), up
+        return Identification(name, values, Homomorphism(named, larger, images.T)), up, parts
 
 
 def _parts(algebra: LieAlgebra) -> list[_Part]:
@@ -113,8 +114,8 @@ def _parts(algebra: LieAlgebra) -> list[_Part]:
     for ideal in algebra.direct_sum_decomposition():
         inner = ideal.as_algebra()
         part = _named(inner)
-        parts.append(_Part(part.row, part.values, part.images @ as_exact(ideal.basis)))
-    return sorted(parts, key=lambda part: (-part.row.dimension, part.row.number, tuple(map(float, part.values))))
+        parts.append(replace(part, images=part.images @ as_exact(ideal.basis)))
+    return sorted(parts, key=lambda part: (-part.row.dimension, part.row.number, part.values))
 
 
 def _named(algebra: LieAlgebra) -> _Part:
@@ -132,11 +133,16 @@ def _named(algebra: LieAlgebra) -> _Part:
         options = _candidates_with_levi_factor(algebra)
     else:
         _undecided(algebra)
+    open_rows: set[Row] = set()
     for row, values, seeds, cosets in options:
         source = row.algebra(values, field)
-        images = find_isomorphism(source, algebra, seeds, cosets)
+        try:
+            images = find_isomorphism(source, algebra, seeds, cosets)
+        except UndecidedError:
+            open_rows.add(row)
+            continue
         if images is not None:
-            return _Part(row, values, images)
+            return _Part(row, values, images, row not in open_rows)
     _undecided(algebra)
 
 
@@ -482,18 +488,34 @@ _INVARIANTS: dict[str, Callable[[LieAlgebra], object]] = {
 def differing_invariant(first: LieAlgebra, second: LieAlgebra) -> str | None:
     """Implements `LieAlgebra.differing_invariant`."""
     first, second = over_one_field(first, second)
+    if (difference := _structural_difference(first, second)) is not None or first.is_semisimple():
+        return difference
+    try:
+        return _compared(first, second)[0]
+    except UndecidedError:
+        return None
+
+
+def _structural_difference(first: LieAlgebra, second: LieAlgebra) -> str | None:
     for name, invariant in _INVARIANTS.items():
         one, two = invariant(first), invariant(second)
         if one != two:
-            shown = "" if invariant is _traces else f": {one} and {two}"
-            return f"{name}{shown}"
-    if first.is_semisimple():
-        return None
-    try:
-        names = identify(first).name, identify(second).name
-    except UndecidedError:
-        return None
-    return None if names[0] == names[1] else f"name: {names[0]} and {names[1]}"
+            return name if invariant is _traces else f"{name}: {one} and {two}"
+    return None
+
+
+def _compared(first: LieAlgebra, second: LieAlgebra) -> tuple[str | None, Homomorphism | None]:
+    """How the names of two algebras differ, and an isomorphism if they do not."""
+    one, up, parts = _identified(first)
+    two, further, others = _identified(over_extension(second, up))
+    rows_differ = [part.row for part in parts] != [part.row for part in others]
+    if rows_differ or tuple(map(further.embed, one.parameters)) != two.parameters:
+        if not (rows_differ or all(part.largest for part in (*parts, *others))):
+            raise UndecidedError(f"{one.name} and {two.name} may be isomorphic")
+        return f"name: {one.name} and {two.name}", None
+    matrix = further.matrix(as_exact(one.homomorphism.matrix))
+    source = over_extension(one.homomorphism.target, further)
+    return None, Homomorphism(source, two.homomorphism.target, as_exact(two.homomorphism.matrix) @ matrix.inverse())
 
 
 def isomorphism(first: LieAlgebra, second: LieAlgebra) -> Homomorphism | None:
@@ -501,19 +523,15 @@ def isomorphism(first: LieAlgebra, second: LieAlgebra) -> Homomorphism | None:
     first, second = over_one_field(first, second)
     if first == second:
         return Homomorphism(first, second, first.field.identity(first.dimension), check=False)  # equal tables
-    if first.dimension != second.dimension or differing_invariant(first, second):
+    if _structural_difference(first, second) is not None:
         return None
     try:
-        one, up = _identified(first)
-        two, further = _identified(over_extension(second, up))
+        return _compared(first, second)[1]
     except UndecidedError:
         return _searched(first, second)
-    matrix = further.matrix(as_exact(one.homomorphism.matrix))
-    source = over_extension(over_extension(first, up), further)
-    return Homomorphism(source, two.homomorphism.target, as_exact(two.homomorphism.matrix) @ matrix.inverse())
 
 
-def _searched(first: LieAlgebra, second: LieAlgebra) -> Homomorphism:
+def _searched(first: LieAlgebra, second: LieAlgebra) -> Homomorphism | None:
     """An isomorphism of algebras that have no name here; `UndecidedError` if none was found."""
     up = trivial_extension(exact_field(first, "isomorphisms"))
     while first.dimension <= MAX_SEARCHED and up.field.degree <= MAX_DEGREE and not first.is_semisimple():
@@ -523,9 +541,7 @@ def _searched(first: LieAlgebra, second: LieAlgebra) -> Homomorphism:
         except LargerFieldError as error:
             up = up.then(error.extension)
             continue
-        if rows_of_map is None:
-            break
-        return Homomorphism(source, target, rows_of_map.T)
+        return None if rows_of_map is None else Homomorphism(source, target, rows_of_map.T)
     raise UndecidedError(f"no isomorphism from {first!r} to {second!r} was found, and no invariant that differs")
 
 
@@ -565,6 +581,6 @@ def over_one_field(first: LieAlgebra, second: LieAlgebra) -> tuple[LieAlgebra, L
     if min(first.field.degree, second.field.degree) > 1:
         fields = f"{first.field.name} and {second.field.name}"
         raise InputError(f"the algebras are over {fields}; bring them to one field by over()")
-    return first.over(second.field) if first.field.degree == 1 else first, (
-        second.over(first.field) if second.field.degree == 1 else second
-    )
+    if first.field.degree == 1:
+        return first.over(second.field), second
+    return first, second.over(first.field)
