@@ -13,6 +13,7 @@ import random
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field as default, replace
+from functools import reduce
 from itertools import combinations, permutations
 from typing import final
 
@@ -120,21 +121,36 @@ def find_isomorphism(
     spaces = [(space @ inverse).row_space() for space in matched.spaces]
     table = target.table.changed(basis, inverse)
     unknown = _Unknowns(field, n)
+    none = field.zeros(0, n)
+    independent: dict[tuple[int, ...], ExactMatrix] = {}  # `lower` in the source, with the units of a block
     for i in range(n):
         unit = field.unit(n, i)
-        inside = [k for k, s in enumerate(flags.spaces) if field.stack_rows([s, unit], n).rank() == s.nrows]
-        start = field.zeros(1, n)
-        room = field.identity(n)
         if cosets and i in cosets:
-            start, room = cosets[i][0] @ inverse, cosets[i][1] @ inverse
+            unknown.add_image(cosets[i][0] @ inverse, cosets[i][1] @ inverse, none, ())
+            continue
+        inside = tuple(k for k, s in enumerate(flags.spaces) if _span(s, unit).nrows == s.nrows)
+        mine, room = (_common(s, inside) for s in (flags.spaces, spaces))
+        below = [k for k, s in enumerate(flags.spaces) if k not in inside and _span(s, mine).nrows == mine.nrows]
+        lower, across = (_span(*(s[k] for k in below), none) for s in (flags.spaces, spaces))
+        if (mine.nrows, lower.nrows) != (room.nrows, across.nrows):
+            return None
+        block = independent.get(inside, lower)
+        if _span(block, unit).nrows == block.nrows:
+            unknown.add_image(field.zeros(1, n), room, none, ())
         else:
-            for k in inside:
-                room = intersection(room, spaces[k])
-        below = [s for k, s in enumerate(spaces) if k not in inside and intersection(s, room).nrows == s.nrows]
-        lower = field.stack_rows(below, n).row_space() if below and not (cosets and i in cosets) else field.zeros(0, n)
-        unknown.add_image(start, room, lower, tuple(inside))
+            independent[inside] = _span(block, unit)
+            unknown.add_image(field.zeros(1, n), room, across, inside)
     values = unknown.solve(_equations(source.table, table, unknown.images))
     return None if values is None else values @ basis
+
+
+def _span(*spaces: ExactMatrix) -> ExactMatrix:
+    return spaces[0].field.stack_rows(spaces, spaces[0].ncols).row_space()
+
+
+def _common(spaces: Sequence[ExactMatrix], positions: Sequence[int]) -> ExactMatrix:
+    """The common subspace of some spaces."""
+    return reduce(intersection, (spaces[k] for k in positions))
 
 
 def _adapted(spaces: Sequence[ExactMatrix]) -> ExactMatrix:
@@ -242,18 +258,21 @@ class _Unknowns:
     thorough: bool = False  # distinguish whether a coefficient is 0, rather than guess
 
     def add_image(self, start: ExactMatrix, room: ExactMatrix, lower: ExactMatrix, key: tuple[int, ...]) -> None:
-        """The image start + (a combination of `room`), outside `lower`, of the next basis element."""
+        """The image start + (a combination of `room`) of the next basis element.
+
+        Images with one key are independent modulo `lower`; the key () says nothing.
+        """
         image: list[Terms] = [{(): c} if c != 0 else {} for c in start.row(0)]
         top = complement_rows(room, lower) if lower.nrows else room
-        block = self.blocks.setdefault(key, [])
+        turn = len(self.blocks.get(key, self.images))
         variables = list(range(len(self.usual), len(self.usual) + room.nrows))
         for variable, row in zip(variables, [*top, *lower], strict=True):
-            self.usual.append(int(start.is_zero() and variable - variables[0] == len(block) % top.nrows))
+            self.usual.append(int(start.is_zero() and variable - variables[0] == turn % top.nrows))
             for position, c in enumerate(row):
                 if c != 0:
                     image[position][(variable,)] = c
-        if start.is_zero():
-            block.append(variables[: top.nrows])
+        if key:
+            self.blocks.setdefault(key, []).append(variables[: top.nrows])
         self.images.append(image)
 
     def solve(self, equations: list[Terms]) -> ExactMatrix | None:

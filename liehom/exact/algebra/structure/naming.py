@@ -15,6 +15,7 @@ from itertools import product
 from typing import NoReturn, final
 
 from liehom.base.errors import InputError, InternalError, SingularError, UndecidedError, displayed
+from liehom.exact.algebra.constructions.families import affine, euclidean, poincare, schroedinger
 from liehom.exact.algebra.constructions.low_dimensional import Row, rows
 from liehom.exact.algebra.constructions.sums import direct_sum
 from liehom.exact.algebra.core.homomorphism import Homomorphism
@@ -70,10 +71,40 @@ class Identification:
 
 @final
 @dataclass(frozen=True, slots=True)
+class _Constructed:
+    """A named algebra of dimension 6 that is a semidirect sum with so(3) or sl(2), in place of a row."""
+
+    build: Callable[[], LieAlgebra]
+    number: int
+    dimension: int = 6
+
+    def name(self, values: Sequence[Scalar], field: ExactField) -> str:
+        """The name in the catalogue."""
+        return self.build().name or ""
+
+    def algebra(self, values: Sequence[Scalar], field: ExactField) -> LieAlgebra:
+        """The algebra over a field."""
+        return self.build().over(field)
+
+
+_WITH_LEVI_FACTOR = [
+    _Constructed(build, number)
+    for number, build in enumerate(
+        (lambda: euclidean(3), lambda: poincare(2), lambda: schroedinger(1), lambda: affine(2))
+    )
+]
+"""The algebras of dimension 6 that are neither solvable nor semisimple nor sums.
+
+Turkowski, Low-dimensional real Lie algebras, J. Math. Phys. 29 (1988) 2139.
+"""
+
+
+@final
+@dataclass(frozen=True, slots=True)
 class _Part:
     """An indecomposable ideal with a row of the table, its parameters, and the images of e1, ..., en as rows."""
 
-    row: Row
+    row: Row | _Constructed
     values: tuple[Scalar, ...]
     images: ExactMatrix
     largest: bool = True  # it is proved that no larger parameters give an isomorphic algebra
@@ -131,6 +162,8 @@ def _named(algebra: LieAlgebra) -> _Part:
         options = _solvable_candidates(algebra)
     elif n - radical == 3 and n in (3, 5):
         options = _candidates_with_levi_factor(algebra)
+    elif n == 6 and n - radical == 3:
+        return _with_levi_factor(algebra)
     else:
         _undecided(algebra)
     open_rows: set[Row] = set()
@@ -143,6 +176,19 @@ def _named(algebra: LieAlgebra) -> _Part:
             continue
         if images is not None:
             return _Part(row, values, images, row not in open_rows)
+    _undecided(algebra)
+
+
+def _with_levi_factor(algebra: LieAlgebra) -> _Part:
+    """The name of an indecomposable algebra of dimension 6 with a Levi factor of dimension 3 and a radical."""
+    field = exact_field(algebra, "names of algebras")
+    for named in _WITH_LEVI_FACTOR:
+        source = named.algebra((), field)
+        if _structural_difference(source, algebra) is None:
+            basis, seeds, cosets = _with_simple_levi_factors(source, algebra)
+            images = find_isomorphism(source.change_of_basis(basis), algebra, seeds, cosets)
+            if images is not None:
+                return _Part(named, (), basis.inverse() @ images)
     _undecided(algebra)
 
 
@@ -159,12 +205,9 @@ def _require_real_summands(algebra: LieAlgebra) -> None:
                 raise LargerFieldError(adjoin_root(f, 0)[0])
 
 
-Option = tuple[
-    Row,
-    tuple[Scalar, ...],
-    Sequence[tuple[ExactMatrix, ExactMatrix]],
-    Mapping[int, tuple[ExactMatrix, ExactMatrix]] | None,
-]
+Seeds = list[tuple[ExactMatrix, ExactMatrix]]
+Cosets = Mapping[int, tuple[ExactMatrix, ExactMatrix]]
+Option = tuple[Row, tuple[Scalar, ...], Seeds, Cosets]
 
 
 # -- nilpotent algebras --------------------------------------------------------------------------------------
@@ -175,7 +218,7 @@ def _nilpotent_candidates(algebra: LieAlgebra) -> Iterator[Option]:
             for signs in product(SIGNS, repeat=len(row.parameters)):
                 values = tuple(field.one * sign for sign in signs)
                 if row.holds(values):
-                    yield row, values, (), None
+                    yield row, values, [], {}
 
 
 @cache
@@ -418,7 +461,7 @@ def _completed(
 
 def _bounds(
     pattern: _Pattern, n: int, weights: _Weights, matrix: ExactMatrix, assigned: list[tuple[list[int], ExactMatrix]]
-) -> tuple[list[tuple[ExactMatrix, ExactMatrix]], dict[int, tuple[ExactMatrix, ExactMatrix]]]:
+) -> tuple[Seeds, Cosets]:
     """The weight spaces that correspond, and where the acting basis elements are mapped to."""
     one = matrix.field.identity(n)
     joined: dict[ExactMatrix, list[int]] = {}
@@ -537,12 +580,35 @@ def _searched(first: LieAlgebra, second: LieAlgebra) -> Homomorphism | None:
     while first.dimension <= MAX_SEARCHED and up.field.degree <= MAX_DEGREE and not first.is_semisimple():
         source, target = over_extension(first, up), over_extension(second, up)
         try:
-            rows_of_map = find_isomorphism(source, target)
+            basis, seeds, cosets = _with_simple_levi_factors(source, target)
+            images = find_isomorphism(source.change_of_basis(basis), target, seeds, cosets)
         except LargerFieldError as error:
             up = up.then(error.extension)
             continue
-        return None if rows_of_map is None else Homomorphism(source, target, rows_of_map.T)
+        return None if images is None else Homomorphism(source, target, (basis.inverse() @ images).T)
     raise UndecidedError(f"no isomorphism from {first!r} to {second!r} was found, and no invariant that differs")
+
+
+def _with_simple_levi_factors(first: LieAlgebra, second: LieAlgebra) -> tuple[ExactMatrix, Seeds, Cosets]:
+    """A basis of the first algebra, subspaces that correspond, and the image of its first element.
+
+    Levi factors are conjugate, and so are elements of one length in so(3), and in sl(2) if the length is positive.
+    """
+    field, n = exact_field(first, "isomorphisms"), first.dimension
+    one = field.identity(n)
+    found = []
+    for algebra in (first, second):
+        levi, radical = (as_exact(part.basis) for part in algebra.levi_decomposition())
+        if levi.nrows != 3:
+            return one, [], {}
+        killing = as_exact(Subalgebra(algebra, levi, check=False).as_algebra().killing_form())
+        element, length = _of_square_length(killing.scale(-1) if killing.signature()[1] == 3 else killing)
+        found.append(((element @ levi).scale(field.one / length), levi, radical))
+    (x, levi, radical), (image, *others) = found
+    basis = field.stack_rows([x, complement_rows(one, x)], n)
+    inverse = basis.inverse()
+    seeds = [(mine @ inverse, other) for mine, other in zip((levi, radical), others, strict=True)]
+    return basis, seeds, {0: (image, field.zeros(0, n))}
 
 
 def is_isomorphic(first: LieAlgebra, second: LieAlgebra) -> bool:
