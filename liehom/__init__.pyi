@@ -60,9 +60,9 @@ from liehom.exact.algebra.constructions.families import (
     euclidean as euclidean,
     galilei as galilei,
     heisenberg as heisenberg,
-    low_dimensional as low_dimensional,
     poincare as poincare,
 )
+from liehom.exact.algebra.constructions.low_dimensional import low_dimensional as low_dimensional
 from liehom.exact.algebra.constructions.sums import direct_sum as direct_sum, semidirect_sum as semidirect_sum
 from liehom.exact.algebra.core.lie_algebra import LieAlgebra as LieAlgebra
 from liehom.exact.algebra.core.subalgebra import Subalgebra as Subalgebra

@@ -27,14 +27,16 @@ ORDER: dict[str, list[str]] = {
         "liehom.cli": "completion guard help inputs atlas_command integration objects plot_command reproduce app",
         "liehom.exact": "scalars algebra representations pauli orbits geometry fullness catalog",
         "liehom.exact.algebra": "core linear roots constructions structure involutions",
-        "liehom.exact.algebra.constructions": "classical family sums families",
+        "liehom.exact.algebra.constructions": "classical family sums families low_dimensional",
         "liehom.exact.algebra.core": "structure_constants jacobi tables lie_algebra subalgebra homomorphism",
         "liehom.exact.algebra.involutions": (
             "cartan_involution rational_involution field_involutions cartan_decomposition parabolic"
         ),
         "liehom.exact.algebra.linear": "complex_matrices generated_span closure linear_bases named_matrices",
         "liehom.exact.algebra.roots": "root_system diagrams chevalley real_form real_form_involutions",
-        "liehom.exact.algebra.structure": "centroid cohomology derivations ideals levi root_spaces identification",
+        "liehom.exact.algebra.structure": (
+            "centroid cohomology derivations ideals levi root_spaces isomorphisms naming identification"
+        ),
         "liehom.exact.catalog": "names algebras pairs",
         "liehom.exact.fullness": (
             "classification_rows isotropy_action certificate certificate_writer checker search verify_classification "

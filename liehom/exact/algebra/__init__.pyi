@@ -24,7 +24,6 @@ from liehom.exact.algebra.constructions.families import (
     free_nilpotent as free_nilpotent,
     galilei as galilei,
     heisenberg as heisenberg,
-    low_dimensional as low_dimensional,
     oscillator as oscillator,
     poincare as poincare,
     schroedinger as schroedinger,
@@ -32,6 +31,7 @@ from liehom.exact.algebra.constructions.families import (
     upper_triangular as upper_triangular,
 )
 from liehom.exact.algebra.constructions.family import Generic as Generic, LieAlgebraFamily as LieAlgebraFamily
+from liehom.exact.algebra.constructions.low_dimensional import low_dimensional as low_dimensional
 from liehom.exact.algebra.constructions.sums import (
     ComplexLieAlgebra as ComplexLieAlgebra,
     central_extension as central_extension,
@@ -75,6 +75,7 @@ from liehom.exact.algebra.structure.cohomology import Cohomology as Cohomology
 from liehom.exact.algebra.structure.derivations import Derivations as Derivations
 from liehom.exact.algebra.structure.ideals import Place as Place
 from liehom.exact.algebra.structure.levi import LeviDecomposition as LeviDecomposition
+from liehom.exact.algebra.structure.naming import Identification as Identification
 from liehom.exact.algebra.structure.root_spaces import (
     RootSpace as RootSpace,
     RootSpaceDecomposition as RootSpaceDecomposition,

@@ -14,7 +14,7 @@ Linear Lie algebras:
 Kinematical, conformal, solvable, free nilpotent families:
   bargmann(n): galilei(n) with mass; schroedinger(n); conformal(p), conformal(p,q)
   filiform(n), oscillator(n), free_nilpotent(g,k)
-  bianchi(I), ..., bianchi(VI;a), bianchi(VII;a), A1,1, ..., A4,12 with parameters as in A4,2(1/2)
+  bianchi(I), ..., bianchi(VI;a), bianchi(VII;a), A1,1, ..., A6,22 with parameters as in A4,2(1/2)
 """
 
 from __future__ import annotations
@@ -34,6 +34,7 @@ from liehom.base.typing import IntegerArray
 from liehom.exact.algebra import linear as families
 from liehom.exact.algebra.constructions import families as constructed
 from liehom.exact.algebra.constructions.classical import simple
+from liehom.exact.algebra.constructions.low_dimensional import low_dimensional
 from liehom.exact.algebra.constructions.sums import direct_sum, semidirect_sum
 from liehom.exact.algebra.core.lie_algebra import LieAlgebra
 from liehom.exact.algebra.linear.closure import lie_closure
@@ -282,7 +283,7 @@ def family_algebra(term: Term) -> LieAlgebra:
     if term.head == "bianchi":
         return _bianchi(term)
     if numbered := _NUMBERED.fullmatch(term.head):
-        return _built(term, constructed.low_dimensional, int(numbered[1]), int(numbered[2]), *term.after)
+        return _built(term, low_dimensional, int(numbered[1]), int(numbered[2]), *term.after)
     build, least, most = _FAMILIES[term.head]
     values = term.integers()
     if term.after or not least <= len(values) <= most:

@@ -46,6 +46,7 @@ if TYPE_CHECKING:
     from liehom.exact.algebra.structure.cohomology import Cohomology
     from liehom.exact.algebra.structure.derivations import Derivations
     from liehom.exact.algebra.structure.levi import LeviDecomposition
+    from liehom.exact.algebra.structure.naming import Identification
     from liehom.exact.algebra.structure.root_spaces import RootSpaceDecomposition
 
 M = TypeVar("M", bound=Matrix)
@@ -92,7 +93,7 @@ class LieAlgebra(Displayed, Immutable):
     [[x, y], z] + [[y, z], x] + [[z, x], y] = 0.
 
     Two algebras are equal (``==``), and hash equal, if they have the same field and the same structure constants:
-    names are not compared, and another basis makes another algebra (`is_isomorphic` compares real forms).
+    names are not compared, and another basis makes another algebra (`is_isomorphic` compares up to isomorphism).
 
     Methods raise `InputError` where an argument does not fit, and `UndecidedError` where float64 decides nothing.
 
@@ -934,19 +935,104 @@ class LieAlgebra(Displayed, Immutable):
         """
         return sum(form.real_rank for form in self.real_forms())
 
+    def identify(self) -> Identification:
+        """The name of the algebra in the tables of small dimension, with an isomorphism from the named algebra.
+
+        Returns
+        -------
+        Identification
+            ``.name`` as in the catalogue, ``.parameters``, and ``.homomorphism``, over a larger real number field if
+            the map or the parameters need one.
+
+        Raises
+        ------
+        UndecidedError
+            If an ideal that is not a direct sum is not in the tables, which hold all real algebras of dimension at most
+            5 and all nilpotent ones of dimension 6 (`low_dimensional`), or if a map needs a field of degree above 24.
+
+        Notes
+        -----
+        The brackets of the map are checked. Parameters are in the range of the table, and are the largest ones among
+        those that give isomorphic algebras, in the order of the dictionary.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> lh.bianchi("III").identify().name, lh.euclidean(2).identify().name, lh.gl(2).identify().name
+        ('A2,1+R', 'A3,6', 'A3,8+R')
+        >>> found = lh.algebra.almost_abelian([[1, 2], [1, 3]]).identify()
+        >>> found.name, found.homomorphism
+        ('A3,5(2 - sqrt(3))', <homomorphism from A3,5(2 - sqrt(3)) to a Lie algebra of dimension 3 over QQ(sqrt(3))>)
+        """
+        from liehom.exact.algebra.structure.naming import identify
+
+        return identify(self)
+
+    def isomorphism(self, other: LieAlgebra) -> Homomorphism | None:
+        """An isomorphism onto another algebra over the reals, or None if there is none.
+
+        Returns
+        -------
+        Homomorphism or None
+            Over the field of the algebras, or over a larger real number field if the map needs one. If the result is
+            None, `differing_invariant` says why.
+
+        Raises
+        ------
+        UndecidedError
+            If no map and no invariant that differs was found.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> lh.heisenberg(1).isomorphism(lh.bianchi("II")).is_isomorphism()
+        True
+        >>> lh.heisenberg(1).isomorphism(lh.euclidean(2)) is None
+        True
+        """
+        from liehom.exact.algebra.structure.naming import isomorphism
+
+        return isomorphism(self, other)
+
+    def differing_invariant(self, other: LieAlgebra) -> str | None:
+        """An invariant that proves that two algebras are not isomorphic over the reals, as a string, or None.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> lh.heisenberg(1).differing_invariant(lh.euclidean(2))
+        'derived series: 3 > 1 > 0 and 3 > 2 > 0'
+        >>> lh.bianchi("VI", 2).differing_invariant(lh.bianchi("VI", 3))
+        'name: A3,5(1/3) and A3,5(1/2)'
+        """
+        from liehom.exact.algebra.structure.naming import differing_invariant
+
+        return differing_invariant(self, other)
+
     def is_isomorphic(self, other: LieAlgebra) -> bool:
-        """Whether two semisimple algebras are isomorphic over the reals.
+        """Whether two algebras are isomorphic over the reals.
 
         Over QQ isomorphism is finer: two quaternion algebras that are definite at the real place give two algebras
         over QQ that are both so(3) over the reals.
+
+        Raises
+        ------
+        UndecidedError
+            If no isomorphism and no invariant that differs was found; see `isomorphism`.
+
+        Notes
+        -----
+        Semisimple ideals that are direct summands are compared by their real forms, without a map.
 
         Examples
         --------
         >>> import liehom as lh
         >>> lh.so(4, 2).is_isomorphic(lh.su(2, 2)), lh.so(5, 1).is_isomorphic(lh.su(2, 2))
         (True, False)
+        >>> lh.heisenberg(1).is_isomorphic(lh.bianchi("II"))
+        True
         """
-        from liehom.exact.algebra.structure.identification import is_isomorphic
+        from liehom.exact.algebra.structure.naming import is_isomorphic
 
         return is_isomorphic(self, other)
 

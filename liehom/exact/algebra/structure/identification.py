@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import final
 
-from liehom.base.errors import InputError, UndecidedError, displayed
+from liehom.base.errors import InputError, UndecidedError
 from liehom.exact.algebra.core.lie_algebra import LieAlgebra
 from liehom.exact.algebra.core.subalgebra import Subalgebra
 from liehom.exact.algebra.roots.real_form import (
@@ -82,19 +82,6 @@ def real_forms_of(algebra: LieAlgebra) -> list[RealForm]:
 def real_form(algebra: LieAlgebra) -> str:
     """Implements `LieAlgebra.real_form`."""
     return join_real_forms(form.name for form in real_forms_of(algebra))
-
-
-def is_isomorphic(first: LieAlgebra, second: LieAlgebra) -> bool:
-    """Implements `LieAlgebra.is_isomorphic`."""
-    for algebra in (first, second):
-        if not isinstance(algebra, LieAlgebra):
-            raise InputError(f"expected a Lie algebra to compare with, such as lh.so(3); got {displayed(algebra)}")
-    if first.dimension != second.dimension:
-        return False
-    for algebra in (first, second):
-        if not algebra.is_semisimple():
-            raise InputError(f"isomorphism is decided for semisimple algebras; {algebra!r} has a radical")
-    return real_form(first) == real_form(second)
 
 
 def _type(centroid: CentroidField) -> str:

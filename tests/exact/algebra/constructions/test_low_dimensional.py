@@ -56,7 +56,8 @@ def test_algebras_with_other_names() -> None:
 
 
 @pytest.mark.parametrize(("n", "k", "parameters", "match"), [
-    (5, 1, (), "dimensions go up to 4"), (4, 13, (), "A4,1 to A4,12"), (4, 2, (), "1 parameter.*a != 0; got 0"),
+    (7, 1, (), "dimensions go up to 6"), (6, 23, (), "A6,1 to A6,22"), (4, 13, (), "A4,1 to A4,12"),
+    (4, 2, (), "1 parameter.*a != 0; got 0"),
     (4, 1, (1,), "0 parameter"), (3, 5, (1,), "0 < abs"), (3, 5, (0,), "another name"),
     (4, 5, (1, "1/2"), "a <= b"), (4, 9, (-1,), "-1 < b"),
 ])  # fmt: skip

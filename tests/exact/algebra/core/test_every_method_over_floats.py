@@ -89,7 +89,8 @@ OF_EXACT_FIELDS = (
     *("semisimple_type", "simple_ideals"),
 )
 REFUSED: dict[str, Question] = {
-    "is_isomorphic": lambda g: g.is_isomorphic(g),
+    **{name: methodcaller(name, lh.so(3)) for name in ("differing_invariant", "is_isomorphic", "isomorphism")},
+    "identify": lambda g: lh.low_dimensional(3, 6).over(g.field).identify(),
     "parabolic_subalgebra": lambda g: g.parabolic_subalgebra([0]),
     **{name: methodcaller(name) for name in OF_EXACT_FIELDS},
 }

@@ -1,0 +1,652 @@
+"""Names of Lie algebras by the tables of small dimension, each with an isomorphism from the named algebra.
+
+An algebra is split into indecomposable ideals over the reals. For a solvable ideal that is not nilpotent, a Cartan
+subalgebra c and its weight spaces are unique up to inner automorphisms. The weights of c on the nilradical are matched
+with those of each row of the table, which are affine in the parameters of the row: linear equations for the parameters
+and for the map on a complement of the nilradical in c. `find_isomorphism` decides the rest, among the weight spaces.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cache
+from itertools import product
+from typing import NoReturn, final
+
+from liehom.base.errors import InputError, InternalError, SingularError, UndecidedError, displayed
+from liehom.exact.algebra.constructions.families import affine, euclidean, poincare, schroedinger
+from liehom.exact.algebra.constructions.low_dimensional import Row, rows
+from liehom.exact.algebra.constructions.sums import direct_sum
+from liehom.exact.algebra.core.homomorphism import Homomorphism
+from liehom.exact.algebra.core.lie_algebra import LieAlgebra
+from liehom.exact.algebra.core.subalgebra import Subalgebra, complement_rows
+from liehom.exact.algebra.structure.centroid import exact_field
+from liehom.exact.algebra.structure.ideals import over_extension
+from liehom.exact.algebra.structure.isomorphisms import (
+    LargerFieldError,
+    characteristic_subspaces,
+    find_isomorphism,
+    intersection,
+)
+from liehom.exact.scalars.exact_field import ExactField, ExactMatrix, as_exact
+from liehom.exact.scalars.extension import Extension, adjoin_root, real_factors, trivial_extension
+from liehom.exact.scalars.field import Scalar
+from liehom.exact.scalars.polynomial import Polynomial
+from liehom.exact.scalars.rational import QQ
+
+MAX_DEGREE = 24  # of the number field of a map
+MAX_SEARCHED = 8  # dimension of algebras without a name between which a map is sought
+SIGNS = (1, -1, 0)  # values of a parameter that the weights do not determine
+
+Weight = tuple[Scalar, ...]  # values on a basis of a complement of the nilradical in a Cartan subalgebra
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Identification:
+    """The name of a Lie algebra, with an isomorphism that proves it.
+
+    Attributes
+    ----------
+    name : str
+        A catalogue name such as 'A4,5(-1,1/2)', or 'A3,1+R' for a direct sum.
+    parameters : tuple of numbers
+        The parameters of all summands, in their order.
+    homomorphism : Homomorphism
+        From the named algebra to the algebra, over the smallest field that was needed.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> found = lh.algebra.oscillator(1).identify()
+    >>> found.name, found.homomorphism.is_isomorphism()
+    ('A4,10', True)
+    """
+
+    name: str
+    parameters: tuple[Scalar, ...]
+    homomorphism: Homomorphism
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class _Constructed:
+    """A named algebra of dimension 6 that is a semidirect sum with so(3) or sl(2), in place of a row."""
+
+    build: Callable[[], LieAlgebra]
+    number: int
+    dimension: int = 6
+
+    def name(self, values: Sequence[Scalar], field: ExactField) -> str:
+        """The name in the catalogue."""
+        return self.build().name or ""
+
+    def algebra(self, values: Sequence[Scalar], field: ExactField) -> LieAlgebra:
+        """The algebra over a field."""
+        return self.build().over(field)
+
+
+_WITH_LEVI_FACTOR = [
+    _Constructed(build, number)
+    for number, build in enumerate(
+        (lambda: euclidean(3), lambda: poincare(2), lambda: schroedinger(1), lambda: affine(2))
+    )
+]
+"""The algebras of dimension 6 that are neither solvable nor semisimple nor sums.
+
+Turkowski, Low-dimensional real Lie algebras, J. Math. Phys. 29 (1988) 2139.
+"""
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class _Part:
+    """An indecomposable ideal with a row of the table, its parameters, and the images of e1, ..., en as rows."""
+
+    row: Row | _Constructed
+    values: tuple[Scalar, ...]
+    images: ExactMatrix
+    largest: bool = True  # it is proved that no larger parameters give an isomorphic algebra
+
+
+def identify(algebra: LieAlgebra) -> Identification:
+    """Implements `LieAlgebra.identify`."""
+    return _identified(algebra)[0]
+
+
+def _identified(algebra: LieAlgebra) -> tuple[Identification, Extension, list[_Part]]:
+    """The name of an algebra, the extension of its field over which the map is defined, and the summands."""
+    up = trivial_extension(exact_field(algebra, "names of algebras"))
+    while True:
+        larger = over_extension(algebra, up)
+        try:
+            parts = _parts(larger)
+        except LargerFieldError as error:
+            up = up.then(error.extension)
+            if (degree := up.field.degree) > MAX_DEGREE:
+                message = f"a map needs a field of degree {degree} over QQ, more than {MAX_DEGREE}"
+                raise UndecidedError(message) from None
+            continue
+        field = up.field
+        source = direct_sum(*(part.row.algebra(part.values, field) for part in parts)) if parts else algebra
+        flat = sum(part.row.dimension == 1 for part in parts)
+        names = [part.row.name(part.values, field) for part in parts if part.row.dimension > 1]
+        name = "+".join([*names, *([f"R^{flat}" if flat > 1 else "R"] if flat else [])]) or "0"
+        named = LieAlgebra(source.table, basis=source.basis_names, name=name, check=False)  # checked as a sum of rows
+        images = field.stack_rows([part.images for part in parts], algebra.dimension)
+        values = tuple(value for part in parts for value in part.values)
+        return Identification(name, values, Homomorphism(named, larger, images.T)), up, parts
+
+
+def _parts(algebra: LieAlgebra) -> list[_Part]:
+    """The indecomposable ideals, largest first, with their rows."""
+    parts = []
+    for ideal in algebra.direct_sum_decomposition():
+        inner = ideal.as_algebra()
+        part = _named(inner)
+        parts.append(replace(part, images=part.images @ as_exact(ideal.basis)))
+    return sorted(parts, key=lambda part: (-part.row.dimension, part.row.number, part.values))
+
+
+def _named(algebra: LieAlgebra) -> _Part:
+    """The row of an indecomposable algebra."""
+    field, n = exact_field(algebra, "names of algebras"), algebra.dimension
+    if n == 1:
+        return _Part(rows()[1, 1], (), field.identity(1))
+    _require_real_summands(algebra)
+    radical = algebra.radical().dimension
+    if radical == n and n <= 6 and algebra.is_nilpotent():
+        options = _nilpotent_candidates(algebra)
+    elif radical == n and n <= 5:
+        options = _solvable_candidates(algebra)
+    elif n - radical == 3 and n in (3, 5):
+        options = _candidates_with_levi_factor(algebra)
+    elif n == 6 and n - radical == 3:
+        return _with_levi_factor(algebra)
+    else:
+        _undecided(algebra)
+    open_rows: set[Row] = set()
+    for row, values, seeds, cosets in options:
+        source = row.algebra(values, field)
+        try:
+            images = find_isomorphism(source, algebra, seeds, cosets)
+        except UndecidedError:
+            open_rows.add(row)
+            continue
+        if images is not None:
+            return _Part(row, values, images, row not in open_rows)
+    _undecided(algebra)
+
+
+def _with_levi_factor(algebra: LieAlgebra) -> _Part:
+    """The name of an indecomposable algebra of dimension 6 with a Levi factor of dimension 3 and a radical."""
+    field = exact_field(algebra, "names of algebras")
+    for named in _WITH_LEVI_FACTOR:
+        source = named.algebra((), field)
+        if _structural_difference(source, algebra) is None:
+            basis, seeds, cosets = _with_simple_levi_factors(source, algebra)
+            images = find_isomorphism(source.change_of_basis(basis), algebra, seeds, cosets)
+            if images is not None:
+                return _Part(named, (), basis.inverse() @ images)
+    _undecided(algebra)
+
+
+def _undecided(algebra: LieAlgebra) -> NoReturn:
+    known = "; ".join(f"{name} {of(algebra)}" for name, of in _INVARIANTS.items() if of is not _traces)
+    raise UndecidedError(f"no name is known for an indecomposable ideal: {known}")
+
+
+def _require_real_summands(algebra: LieAlgebra) -> None:
+    """Ask for the field over which an element of the centroid separates real direct summands."""
+    for theta in algebra.centroid()[:4] if algebra.dimension > 3 else ():
+        for f, _ in Polynomial(theta.field, theta.characteristic_coefficients()).factor():
+            if f.degree > 1 and f.count_real_roots():
+                raise LargerFieldError(adjoin_root(f, 0)[0])
+
+
+Seeds = list[tuple[ExactMatrix, ExactMatrix]]
+Cosets = Mapping[int, tuple[ExactMatrix, ExactMatrix]]
+Option = tuple[Row, tuple[Scalar, ...], Seeds, Cosets]
+
+
+# -- nilpotent algebras --------------------------------------------------------------------------------------
+def _nilpotent_candidates(algebra: LieAlgebra) -> Iterator[Option]:
+    field = exact_field(algebra, "names of algebras")
+    for (n, _), row in rows().items():
+        if n == algebra.dimension and _kind(_sample(row)) == _kind(algebra):
+            for signs in product(SIGNS, repeat=len(row.parameters)):
+                values = tuple(field.one * sign for sign in signs)
+                if row.holds(values):
+                    yield row, values, [], {}
+
+
+@cache
+def _kind(algebra: LieAlgebra) -> tuple[int, ...]:
+    """Dimensions of the derived algebra, the nilradical and its series, the same for all parameters of a row."""
+    nilradical = algebra.nilradical().as_algebra()
+    series = nilradical.lower_central_series(), nilradical.upper_central_series()
+    return algebra.dimension, *(len(terms) for terms in series), *(h.dimension for terms in series for h in terms)
+
+
+@cache
+def _sample(row: Row) -> LieAlgebra:
+    """The algebra of a row for some rational parameters in its range."""
+    small = [QQ.convert(x) for x in ("1/2", 1, -1, 0, 2)]
+    values = next(values for values in product(small, repeat=len(row.parameters)) if row.holds(values))
+    return row.algebra(values, QQ)
+
+
+# -- weights on the nilradical -------------------------------------------------------------------------------
+@final
+@dataclass(frozen=True, slots=True)
+class _Space:
+    """A weight space, or the real subspace of two conjugate ones: real and imaginary part of the weight, and rows."""
+
+    real: Weight
+    imaginary: Weight | None
+    rows: ExactMatrix
+    nilpotent: Weight  # ad x_b minus its semisimple part, as multiples of one matrix; () if there is none
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class _Weights:
+    """The weights of a Cartan subalgebra on the nilradical, with a complement of the nilradical in it."""
+
+    acting: ExactMatrix
+    central: ExactMatrix  # the common part of the Cartan subalgebra and the nilradical
+    spaces: list[_Space]
+
+
+def _weights(algebra: LieAlgebra) -> _Weights:
+    field, n = exact_field(algebra, "weights"), algebra.dimension
+    nilradical, cartan = as_exact(algebra.nilradical().basis), as_exact(algebra.cartan_subalgebra().basis)
+    central = intersection(cartan, nilradical)
+    acting = complement_rows(cartan, central) if central.nrows else cartan
+    best: tuple[ExactMatrix, list[tuple[Polynomial, int]]] | None = None
+    for attempt in range(1, 4 if acting.nrows > 1 else 2):
+        x = field.matrix([[(attempt + 1) ** (3 * b) for b in range(acting.nrows)]]) @ acting
+        action = algebra.ad(x).T
+        factors = Polynomial(field, action.characteristic_coefficients()).factor()
+        if best is None or len(factors) > len(best[1]):
+            best = action, factors
+    if best is None:
+        raise InternalError("no element of a Cartan subalgebra was tried")
+    action, factors = best
+    adjoint = [algebra.ad(acting.select(rows=[b])).T for b in range(acting.nrows)]
+    spaces = [_space(action, adjoint, f, m, field.identity(n)) for f, m in sorted(factors, key=lambda p: p[0].degree)]
+    return _Weights(acting, central, [s for s in spaces if s.imaginary or any(x != 0 for x in s.real)])
+
+
+def _space(action: ExactMatrix, adjoint: list[ExactMatrix], f: Polynomial, m: int, one: ExactMatrix) -> _Space:
+    """The weight space of an irreducible factor of multiplicity m; `LargerFieldError` if it does not split."""
+    field = one.field
+    if f.degree > 2 or (f.degree == 2 and f.count_real_roots()):
+        raise LargerFieldError(real_factors(f)[0].extension)
+    f = f.monic()
+    shift = -f.coefficients[f.degree - 1] / f.degree
+    centred = action - one.scale(shift)
+    height = field.zero
+    if f.degree == 2:
+        square = f.coefficients[0] - shift * shift
+        pure = Polynomial(field, [-square, 0, 1])
+        if len(pure.factor()) == 1:
+            raise LargerFieldError(adjoin_root(pure, 1)[0])
+        height = abs(pure.factor()[0][0].monic().coefficients[0])
+        centred = centred @ centred + one.scale(square)
+    power = centred
+    for _ in range(m - 1):
+        power = power @ centred
+    basis = power.left_null_space().row_space()
+    pivots = basis.echelon()[1]
+    inside = [(basis @ a).select(columns=pivots) @ basis.select(columns=pivots).inverse() for a in adjoint]
+    d = basis.nrows
+    real = tuple(a.trace() / d for a in inside)
+    unit = field.identity(d)
+    if f.degree == 2:
+        turn = ((basis @ action).select(columns=pivots) @ basis.select(columns=pivots).inverse()) - unit.scale(shift)
+        return _Space(real, tuple(-(turn @ a).trace() / (height * d) for a in inside), basis, ())
+    rest = [a - unit.scale(w) for a, w in zip(inside, real, strict=True)]
+    span = field.stack_rows([a.reshape(1, d * d) for a in rest], d * d)
+    if span.rank() != 1:
+        return _Space(real, None, basis, ())
+    column = span.echelon()[1][0]
+    return _Space(real, None, basis, tuple(span.row(b)[column] for b in range(len(adjoint))))
+
+
+# -- weights of a row ----------------------------------------------------------------------------------------
+Affine = Mapping[str, int]
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class _Pattern:
+    """The weights of a row, affine in its parameters, for the basis elements outside the nilradical."""
+
+    acting: tuple[int, ...]
+    real: list[tuple[int, list[Affine]]]  # (index of the basis element, its weight)
+    pairs: list[tuple[int, list[Affine], list[Affine]]]  # (index of the first of two, real part, imaginary part)
+    nilpotent: list[bool]  # for each acting element, whether it maps a real basis element to another one
+    free: tuple[str, ...]  # parameters in the weights
+
+
+@cache
+def _pattern(row: Row) -> _Pattern:
+    sample = _sample(row)
+    nilradical = as_exact(sample.nilradical().basis)
+    inside = set(nilradical.echelon()[1])
+    acting = tuple(a for a in range(row.dimension) if a not in inside)
+    entries: dict[tuple[int, int, int], Affine] = {}  # (a, i, m): the coefficient of e_m in [e_a, e_i]
+    for i, j, m, c in row.brackets:
+        entries[i, j, m] = c
+        entries[j, i, m] = {x: -v for x, v in c.items()}
+    real, pairs = [], []
+    i = 0
+    while i < row.dimension:
+        if i in inside:
+            weight = [entries.get((a, i, i), {}) for a in acting]
+            turn = [entries.get((a, i, i + 1), {}) for a in acting]
+            back = [{x: -v for x, v in entries.get((a, i + 1, i), {}).items()} for a in acting]
+            if any(turn) and turn == back:
+                pairs.append((i, weight, turn))
+                i += 1
+            else:
+                real.append((i, weight))
+        i += 1
+    single = {i for i, _ in real}
+    nilpotent = [any(b == a and {i, m} <= single and i != m for b, i, m in entries) for a in acting]
+    parts = [c for _, w in real for c in w] + [c for _, u, v in pairs for c in (*u, *v)]
+    free = tuple(x for x in row.parameters if any(c.get(x) for c in parts))
+    return _Pattern(acting, real, pairs, nilpotent, free)
+
+
+def _solvable_candidates(algebra: LieAlgebra) -> Iterator[Option]:
+    field, weights = exact_field(algebra, "weights"), _weights(algebra)
+    zero = (field.zero,) * weights.acting.nrows
+    spaces = [s for s in weights.spaces if s.imaginary is None]
+    if weights.central.nrows:
+        spaces.append(_Space(zero, None, weights.central, ()))
+    pairs = [s for s in weights.spaces if s.imaginary is not None]
+    counts = sum(s.rows.nrows for s in spaces), sum(s.rows.nrows // 2 for s in pairs)
+    kind = _kind(algebra)
+    for (n, _), row in rows().items():
+        if n != algebra.dimension or _kind(_sample(row)) != kind or _sample(row).radical().dimension < n:
+            continue
+        pattern = _pattern(row)
+        if len(pattern.acting) != len(zero) or (len(pattern.real), len(pattern.pairs)) != counts:
+            continue
+        options: dict[tuple[object, ...], tuple[Weight, list[int], list[tuple[int, int]], ExactMatrix]] = {}
+        lines, planes = (
+            list(_assignments(s, *size)) for s, size in ((spaces, (counts[0], 1)), (pairs, (counts[1], 2)))
+        )
+        for at, across, signs in product(lines, planes, product((1, -1), repeat=counts[1])):
+            turned = list(zip(across, signs, strict=True))
+            match = _matched(row, pattern, field, [spaces[k] for k in at], [(pairs[k], s) for k, s in turned])
+            if match is None:
+                continue
+            known, matrix = match
+            for values in _completed(row, pattern, known, field):
+                options.setdefault((values, tuple(at), tuple(across)), (values, at, turned, matrix))
+        for values, at, turned, matrix in sorted(options.values(), key=lambda o: o[0], reverse=True):
+            yield row, values, *_bounds(pattern, n, weights, matrix, [
+                *(([i], spaces[k].rows) for (i, _), k in zip(pattern.real, at, strict=True)),
+                *(([i, i + 1], pairs[k].rows) for (i, *_), (k, _) in zip(pattern.pairs, turned, strict=True)),
+            ])  # fmt: skip
+
+
+def _assignments(spaces: list[_Space], count: int, size: int) -> Iterator[list[int]]:
+    """All lists of positions of spaces in which each occurs as often as its dimension, divided by `size`, says."""
+    left = [s.rows.nrows // size for s in spaces]
+
+    def extend(chosen: list[int]) -> Iterator[list[int]]:
+        if len(chosen) == count:
+            yield chosen
+            return
+        for k in range(len(spaces)):
+            if left[k]:
+                left[k] -= 1
+                yield from extend([*chosen, k])
+                left[k] += 1
+
+    return extend([])
+
+
+def _matched(
+    row: Row, pattern: _Pattern, field: ExactField, real: list[_Space], pairs: list[tuple[_Space, int]]
+) -> tuple[dict[str, Scalar], ExactMatrix] | None:
+    """The parameters, and the matrix A with e_a -> sum_b A_ab x_b modulo the nilradical, for which weights agree."""
+    k, unknown = len(pattern.acting), pattern.free
+    left: list[list[Scalar]] = []
+    right: list[Scalar] = []
+
+    def require(a: int, weight: Weight, wanted: Affine) -> None:
+        line = [field.zero] * (k * k + len(unknown))
+        line[a * k : (a + 1) * k] = list(weight)
+        for position, x in enumerate(unknown):
+            line[k * k + position] = field.one * -wanted.get(x, 0)
+        left.append(line)
+        right.append(field.one * wanted.get("", 0))
+
+    for a in range(k):
+        for (_, weight), space in zip(pattern.real, real, strict=True):
+            require(a, space.real, weight[a])
+            if space.nilpotent and k > 1 and not pattern.nilpotent[a]:
+                require(a, space.nilpotent, {})
+        for (_, weight, turn), (space, sign) in zip(pattern.pairs, pairs, strict=True):
+            require(a, space.real, weight[a])
+            require(a, tuple(y * sign for y in space.imaginary or ()), turn[a])
+    table = field.matrix(left)
+    if table.rank() < table.ncols:
+        return None
+    try:
+        solution = table.solve(field.matrix([[x] for x in right])).T.row(0)
+    except SingularError:
+        return None
+    matrix = field.matrix([solution[a * k : (a + 1) * k] for a in range(k)])
+    return (dict(zip(unknown, solution[k * k :], strict=True)), matrix) if matrix.rank() == k else None
+
+
+def _completed(
+    row: Row, pattern: _Pattern, known: dict[str, Scalar], field: ExactField
+) -> Iterator[tuple[Scalar, ...]]:
+    """The parameters in the range of the table, with signs for those that the weights do not show."""
+    rest = [x for x in row.parameters if x not in pattern.free]
+    for signs in product(SIGNS, repeat=len(rest)):
+        full = known | {x: field.one * sign for x, sign in zip(rest, signs, strict=True)}
+        values = tuple(full[x] for x in row.parameters)
+        if row.holds(values):
+            yield values
+
+
+def _bounds(
+    pattern: _Pattern, n: int, weights: _Weights, matrix: ExactMatrix, assigned: list[tuple[list[int], ExactMatrix]]
+) -> tuple[Seeds, Cosets]:
+    """The weight spaces that correspond, and where the acting basis elements are mapped to."""
+    one = matrix.field.identity(n)
+    joined: dict[ExactMatrix, list[int]] = {}
+    for indices, space in assigned:
+        joined.setdefault(space, []).extend(indices)
+    seeds = [(one.select(rows=indices), space) for space, indices in joined.items()]
+    images = matrix @ weights.acting
+    return seeds, {a: (images.select(rows=[r]), weights.central) for r, a in enumerate(pattern.acting)}
+
+
+# -- simple algebras of dimension 3 --------------------------------------------------------------------------
+def _candidates_with_levi_factor(algebra: LieAlgebra) -> Iterator[Option]:
+    """sl(2), so(3) and the sum of sl(2) with its representation of dimension 2: the image of one element is given."""
+    field, n = exact_field(algebra, "names of algebras"), algebra.dimension
+    levi, radical = algebra.levi_decomposition()
+    killing = as_exact(levi.as_algebra().killing_form())
+    compact = killing.signature()[1] == 3
+    row = rows()[5, 40] if n == 5 else rows()[3, 9 if compact else 8]
+    if n == 5 and compact:
+        return
+    element, length = _of_square_length(killing.scale(-1) if compact else killing)
+    image = element @ as_exact(levi.basis).scale((2 if n == 5 else 1) / length)
+    one, none = field.identity(n), field.zeros(0, n)
+    seeds = [(one.select(rows=range(3)), as_exact(levi.basis)), (one.select(rows=range(3, n)), as_exact(radical.basis))]
+    yield row, (), seeds, {2 if compact else 1: (image, none)}
+
+
+def _of_square_length(form: ExactMatrix) -> tuple[ExactMatrix, Scalar]:
+    """A vector x and a root of form(x, x) / 2 > 0; `LargerFieldError` if no small vector has a root in the field."""
+    field, positive = form.field, []
+    for entries in sorted(product(range(-2, 3), repeat=3), key=lambda row: (sum(map(abs, row)), row)):
+        x = field.matrix([entries])
+        square = (x @ form @ x.T)[0, 0] / 2
+        if square > 0:
+            f = Polynomial(field, [-square, 0, 1])
+            roots = [-g.monic().coefficients[0] for g, _ in f.factor() if g.degree == 1]
+            if roots:
+                return x, abs(roots[0])
+            positive.append(f)
+    raise LargerFieldError(adjoin_root(positive[0], 1)[0])
+
+
+# -- invariants and isomorphisms -----------------------------------------------------------------------------
+def _dimensions(series: Sequence[Subalgebra]) -> str:
+    return " > ".join(str(term.dimension) for term in series)
+
+
+def _traces(algebra: LieAlgebra) -> tuple[tuple[int, int], ...]:
+    flags = characteristic_subspaces(algebra)
+    return tuple(flags.origin) if flags else ()
+
+
+_INVARIANTS: dict[str, Callable[[LieAlgebra], object]] = {
+    "dimension": lambda g: g.dimension,
+    "derived series": lambda g: _dimensions(g.derived_series()),
+    "lower central series": lambda g: _dimensions(g.lower_central_series()),
+    "upper central series": lambda g: _dimensions(g.upper_central_series()),
+    "dimension of the nilradical": lambda g: g.nilradical().dimension,
+    "Levi factor": lambda g: g.real_form(),
+    "signature of the Killing form": lambda g: g.killing_signature(),
+    "number of outer derivations": lambda g: g.derivations().outer_dimension,
+    "dimensions of characteristic subspaces": _traces,
+}
+"""Invariants under isomorphisms over the reals, the quick ones first."""
+
+
+def differing_invariant(first: LieAlgebra, second: LieAlgebra) -> str | None:
+    """Implements `LieAlgebra.differing_invariant`."""
+    first, second = over_one_field(first, second)
+    if (difference := _structural_difference(first, second)) is not None or first.is_semisimple():
+        return difference
+    try:
+        return _compared(first, second)[0]
+    except UndecidedError:
+        return None
+
+
+def _structural_difference(first: LieAlgebra, second: LieAlgebra) -> str | None:
+    for name, invariant in _INVARIANTS.items():
+        one, two = invariant(first), invariant(second)
+        if one != two:
+            return name if invariant is _traces else f"{name}: {one} and {two}"
+    return None
+
+
+def _compared(first: LieAlgebra, second: LieAlgebra) -> tuple[str | None, Homomorphism | None]:
+    """How the names of two algebras differ, and an isomorphism if they do not."""
+    one, up, parts = _identified(first)
+    two, further, others = _identified(over_extension(second, up))
+    rows_differ = [part.row for part in parts] != [part.row for part in others]
+    if rows_differ or tuple(map(further.embed, one.parameters)) != two.parameters:
+        if not (rows_differ or all(part.largest for part in (*parts, *others))):
+            raise UndecidedError(f"{one.name} and {two.name} may be isomorphic")
+        return f"name: {one.name} and {two.name}", None
+    matrix = further.matrix(as_exact(one.homomorphism.matrix))
+    source = over_extension(one.homomorphism.target, further)
+    return None, Homomorphism(source, two.homomorphism.target, as_exact(two.homomorphism.matrix) @ matrix.inverse())
+
+
+def isomorphism(first: LieAlgebra, second: LieAlgebra) -> Homomorphism | None:
+    """Implements `LieAlgebra.isomorphism`."""
+    first, second = over_one_field(first, second)
+    if first == second:
+        return Homomorphism(first, second, first.field.identity(first.dimension), check=False)  # equal tables
+    if _structural_difference(first, second) is not None:
+        return None
+    try:
+        return _compared(first, second)[1]
+    except UndecidedError:
+        return _searched(first, second)
+
+
+def _searched(first: LieAlgebra, second: LieAlgebra) -> Homomorphism | None:
+    """An isomorphism of algebras that have no name here; `UndecidedError` if none was found."""
+    up = trivial_extension(exact_field(first, "isomorphisms"))
+    while first.dimension <= MAX_SEARCHED and up.field.degree <= MAX_DEGREE and not first.is_semisimple():
+        source, target = over_extension(first, up), over_extension(second, up)
+        try:
+            basis, seeds, cosets = _with_simple_levi_factors(source, target)
+            images = find_isomorphism(source.change_of_basis(basis), target, seeds, cosets)
+        except LargerFieldError as error:
+            up = up.then(error.extension)
+            continue
+        return None if images is None else Homomorphism(source, target, (basis.inverse() @ images).T)
+    raise UndecidedError(f"no isomorphism from {first!r} to {second!r} was found, and no invariant that differs")
+
+
+def _with_simple_levi_factors(first: LieAlgebra, second: LieAlgebra) -> tuple[ExactMatrix, Seeds, Cosets]:
+    """A basis of the first algebra, subspaces that correspond, and the image of its first element.
+
+    Levi factors are conjugate, and so are elements of one length in so(3), and in sl(2) if the length is positive.
+    """
+    field, n = exact_field(first, "isomorphisms"), first.dimension
+    one = field.identity(n)
+    found = []
+    for algebra in (first, second):
+        levi, radical = (as_exact(part.basis) for part in algebra.levi_decomposition())
+        if levi.nrows != 3:
+            return one, [], {}
+        killing = as_exact(Subalgebra(algebra, levi, check=False).as_algebra().killing_form())
+        element, length = _of_square_length(killing.scale(-1) if killing.signature()[1] == 3 else killing)
+        found.append(((element @ levi).scale(field.one / length), levi, radical))
+    (x, levi, radical), (image, *others) = found
+    basis = field.stack_rows([x, complement_rows(one, x)], n)
+    inverse = basis.inverse()
+    seeds = [(mine @ inverse, other) for mine, other in zip((levi, radical), others, strict=True)]
+    return basis, seeds, {0: (image, field.zeros(0, n))}
+
+
+def is_isomorphic(first: LieAlgebra, second: LieAlgebra) -> bool:
+    """Implements `LieAlgebra.is_isomorphic`."""
+    first, second = over_one_field(first, second)
+    if first.dimension != second.dimension:
+        return False
+    if first == second:
+        return True
+    forms, rest = zip(*map(_without_semisimple_ideals, (first, second)), strict=True)
+    if forms[0] != forms[1]:
+        return False
+    return rest[0].dimension == 0 or isomorphism(*rest) is not None
+
+
+def _without_semisimple_ideals(algebra: LieAlgebra) -> tuple[str, LieAlgebra]:
+    """The real form of the largest semisimple ideal that is a direct summand, and the sum of the other ideals."""
+    if algebra.is_semisimple():
+        return algebra.real_form(), LieAlgebra({}, algebra.field, dimension=0)
+    if algebra.is_solvable():
+        return "0", algebra
+    ideals = [ideal.as_algebra() for ideal in algebra.direct_sum_decomposition()]
+    simple = [ideal for ideal in ideals if ideal.is_semisimple()]
+    form = direct_sum(*simple).real_form() if simple else "0"
+    return form, direct_sum(*(ideal for ideal in ideals if not ideal.is_semisimple()))
+
+
+def over_one_field(first: LieAlgebra, second: LieAlgebra) -> tuple[LieAlgebra, LieAlgebra]:
+    """Two algebras over the larger of their exact fields; `InputError` if neither contains the other."""
+    for algebra in (first, second):
+        if not isinstance(algebra, LieAlgebra):
+            raise InputError(f"expected a Lie algebra to compare with, such as lh.so(3); got {displayed(algebra)}")
+        exact_field(algebra, "isomorphisms")
+    if first.field == second.field:
+        return first, second
+    if min(first.field.degree, second.field.degree) > 1:
+        fields = f"{first.field.name} and {second.field.name}"
+        raise InputError(f"the algebras are over {fields}; bring them to one field by over()")
+    if first.field.degree == 1:
+        return first.over(second.field), second
+    return first, second.over(first.field)
