@@ -24,11 +24,11 @@ from liehom.base.errors import (
 from liehom.base.objects import Displayed, Immutable
 from liehom.base.typing import VectorLike
 from liehom.exact.algebra.core.lie_algebra import LieAlgebra
-from liehom.exact.algebra.core.structure_constants import StructureConstants
 from liehom.exact.algebra.core.tables import RowsLike, coefficients
 from liehom.exact.scalars.exact_field import ExactMatrix
 from liehom.exact.scalars.field import Field, Matrix, Scalar, rows_of
 from liehom.exact.scalars.floating import FloatMatrix
+from liehom.exact.scalars.modular import independent_columns
 from liehom.exact.scalars.subspaces import Quotient, Subspace, echelon_quotient, quotient
 
 if TYPE_CHECKING:
@@ -187,15 +187,17 @@ class Subalgebra(Displayed, Immutable):
         >>> lh.gl(2).subalgebra([[0, 1, 0, 0], [1, 0, 0, -1]]).as_algebra().dimension
         2
         """
-        k, field = self.dimension, self.algebra.field
-        if isinstance(self.basis, FloatMatrix):
-            coordinates = self.basis.solve(field.identity(k))
-            # A closed subspace of a Lie algebra: the axioms hold.
-            return LieAlgebra(self.algebra.table.changed(self.basis, coordinates), name=name, check=False)
-        brackets = self.algebra.table.contract(self.basis, self.basis, field.identity(self.algebra.dimension))
-        blocks = [self.basis.T.solve(block.T).T for block in brackets]
         # A closed subspace of a Lie algebra: the axioms hold.
-        return LieAlgebra(StructureConstants.from_blocks(field, k, blocks), name=name, check=False)
+        return LieAlgebra(self.algebra.table.changed(self.basis, self._coordinates()), name=name, check=False)
+
+    def _coordinates(self) -> Matrix:
+        """A matrix (n, k) that reads the coordinates, in the basis, of the rows that are in h."""
+        basis = self.basis
+        if not isinstance(basis, ExactMatrix):
+            return basis.solve(self.algebra.field.identity(self.dimension))
+        columns = independent_columns(basis)
+        units = basis.field.identity(basis.ncols).select(columns=columns)
+        return units @ basis.select(columns=columns).inverse()
 
     def is_ideal(self) -> bool:
         """Whether [g, h] lies in h."""
