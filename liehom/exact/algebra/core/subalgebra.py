@@ -353,18 +353,17 @@ def products(algebra: LieAlgebra, left: M, right: M) -> M:
     n, table = algebra.dimension, algebra.table
     if algebra.field.exact and left.nrows > SAMPLES:
         # the span of [x, right] for a few combinations x of `left`, if all of [left, right] is in it
-        span: Any = algebra.field.stack_rows([right @ algebra.ad(x).T for x in _samples(left)], n).row_space()
+        span: Any = table.bracket_rows(_samples(left), right).row_space()
         if span.nrows == n or table.first_nonzero(left, right, echelon_quotient(span).projection) is None:
             return cast(M, span)
     return table.bracket_rows(left, right).row_space("the dimension of a span of brackets")
 
 
-def _samples(rows: M) -> list[M]:
-    """`SAMPLES` random combinations of rows, each (1, n)."""
+def _samples(rows: M) -> M:
+    """`SAMPLES` random combinations of rows, as rows."""
     rng = random.Random(rows.nrows)
-    weights = [[rng.randint(-9, 9) for _ in range(rows.nrows)] for _ in range(SAMPLES)]
-    combined = rows.field.matrix(weights) @ rows
-    return [combined.select(rows=[i]) for i in range(SAMPLES)]
+    field: Any = rows.field
+    return cast(M, field.from_integers([rng.randint(-9, 9) for _ in range(SAMPLES * rows.nrows)], SAMPLES, rows.nrows) @ rows)
 
 
 def generated(algebra: LieAlgebra, rows: Subalgebra | RowsLike, *, ideal: bool = False) -> Subalgebra:
@@ -380,34 +379,34 @@ def generated(algebra: LieAlgebra, rows: Subalgebra | RowsLike, *, ideal: bool =
 
 def centralizer(algebra: LieAlgebra, rows: Subalgebra | RowsLike) -> Subalgebra:
     """Implements `LieAlgebra.centralizer`."""
-    n, field = algebra.dimension, algebra.field
     span = _span(algebra, rows)
-    if isinstance(span, ExactMatrix) and span.nrows > SAMPLES:
-        # the space that commutes with a few combinations is the centralizer if it commutes with all rows
-        basis = field.stack_rows([algebra.ad(x) for x in _samples(span)], n).null_space()
-        if algebra.table.first_nonzero(basis, span, field.identity(n)) is None:
+    return _bracketed_into(algebra, span, algebra.field.identity(algebra.dimension), "the dimension of a centralizer")
+
+
+def _bracketed_into(algebra: LieAlgebra, rows: Matrix, projection: Matrix, question: str) -> Subalgebra:
+    """The x with [r, x] in the kernel of a projection for all rows r; it must be known to be closed."""
+    table = algebra.table
+    if isinstance(rows, ExactMatrix) and rows.nrows > SAMPLES:
+        # the solutions for a few combinations are the solutions if they are solutions for all rows
+        basis: Matrix = table.bracket_columns(_samples(rows), projection).left_null_space(question)
+        if table.first_nonzero(basis, rows, projection) is None:
             return Subalgebra(algebra, basis, check=False)
-    conditions = algebra.table.bracket_columns(span, field.identity(n))
-    # closed by the Jacobi identity
-    return Subalgebra(algebra, conditions.left_null_space("the dimension of a centralizer"), check=False)
+    return Subalgebra(algebra, table.bracket_columns(rows, projection).left_null_space(question), check=False)
 
 
 def normalizer(subalgebra: Subalgebra) -> Subalgebra:
     """Implements `LieAlgebra.normalizer`."""
-    conditions = subalgebra.algebra.table.bracket_columns(subalgebra._rows(), subalgebra._projection())
-    # closed by the Jacobi identity
-    return Subalgebra(subalgebra.algebra, conditions.left_null_space("the dimension of a normalizer"), check=False)
+    rows, projection = subalgebra._rows(), subalgebra._projection()
+    return _bracketed_into(subalgebra.algebra, rows, projection, "the dimension of a normalizer")  # closed by Jacobi
 
 
 def upper_central_series(algebra: LieAlgebra) -> list[Subalgebra]:
     """Implements `LieAlgebra.upper_central_series`."""
-    n, field = algebra.dimension, algebra.field
-    terms = [Subalgebra(algebra, field.zeros(0, n), check=False)]
+    one = algebra.field.identity(algebra.dimension)
+    terms = [Subalgebra(algebra, algebra.field.zeros(0, algebra.dimension), check=False)]
     while True:
-        # x with [e_i, x] in the last term for all i
-        conditions = algebra.table.bracket_columns(field.identity(n), terms[-1]._projection())
         # an ideal, as the last term is
-        following = Subalgebra(algebra, conditions.left_null_space("the upper central series"), check=False)
+        following = _bracketed_into(algebra, one, terms[-1]._projection(), "the upper central series")
         if following.dimension <= terms[-1].dimension:
             return terms
         terms.append(following)
