@@ -49,12 +49,12 @@ NAMES = ("so8", "sl8", "E6", "E7", "so53", "sl6", "b6", "b8", "mixed10", "mixed2
 
 @cache
 def pair(name: str) -> list[list[int]]:
-    """Two elements with four non-zero coefficients at most."""
+    """Two elements, with four non-zero coefficients and with a half of all coefficients."""
     n = algebra(name).dimension
     rng = random.Random(n)
     rows = [[0] * n for _ in range(2)]
-    for row in rows:
-        for j in rng.sample(range(n), 4):
+    for row, count in zip(rows, (4, n // 2), strict=True):
+        for j in rng.sample(range(n), count):
             row[j] = rng.choice((-2, -1, 1, 2))
     return rows
 

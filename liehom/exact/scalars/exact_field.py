@@ -36,7 +36,6 @@ from liehom.exact.scalars.integer_matrices import (
     zero_matrix,
 )
 
-MIN_TALL_RATIO = 2  # of rows to columns, from which full rank is looked for modulo a prime
 MIN_GUESSED_SIZE = 40  # from which an integral inverse is guessed modulo a prime
 _set = object.__setattr__
 
@@ -345,7 +344,7 @@ class ExactMatrix(Matrix, Immutable):
         m, ncols = self._field.degree, self.ncols
         if 0 in self.shape:
             return self._field.zeros(0, ncols), []
-        if self.nrows > MIN_TALL_RATIO * ncols and int(self.modulo().rank()) == ncols:
+        if self.nrows >= ncols and int(self.modulo().rank()) == ncols:
             return self._field.identity(ncols), list(range(ncols))  # independent modulo a prime, so independent
         reduced, den, full_rank = bounded_echelon(self._restricted())
         parts = separated(reduced, m, rank := full_rank // m)

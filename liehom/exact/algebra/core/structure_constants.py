@@ -68,7 +68,6 @@ DENSE_DIMENSION = 64  # up to this dimension one dense product is faster than sp
 LARGEST_DENSE = 160  # up to this dimension tables with more than n^2 entries are contracted densely
 EXACT_FLOATS = float(1 << 53)  # float64 holds all integers below this one
 MOST_FLOATS = 1 << 22  # entries of the arrays of one contraction in float64
-FEW_ROWS = 4  # on the left, whose matrices ad x are made one by one
 
 
 def exact_floats(matrix: ExactMatrix) -> Array | None:
@@ -347,7 +346,7 @@ class StructureConstants(Immutable):
     def contract_floats(self, left: Matrix, right: Matrix, out: Matrix) -> Array | None:
         """The numerators of `contract` in float64, shape (p, q, r), or None if they may not be exact, or too many."""
         n, p, q, r = self.dimension, left.nrows, right.nrows, out.ncols
-        few = p <= FEW_ROWS
+        few = p < r  # the matrices ad x of the rows x on the left are made one by one
         size = p * max(n, q) * n if few else max(n, p) * max(n, q) * r
         if 0 in (n, p, q, r) or size > MOST_FLOATS or (c := self.floats()) is None:
             return None

@@ -369,12 +369,14 @@ def _samples(rows: M) -> M:
 def generated(algebra: LieAlgebra, rows: Subalgebra | RowsLike, *, ideal: bool = False) -> Subalgebra:
     """Implements `LieAlgebra.subalgebra_generated_by` and, if `ideal`, `LieAlgebra.ideal_generated_by`."""
     n, field = algebra.dimension, algebra.field
-    span, before = _span(algebra, rows), -1
-    while before < span.nrows:
-        before = span.nrows
-        brackets = products(algebra, span, field.identity(n) if ideal else span)
-        span = field.stack_rows([span, brackets], n).row_space(GENERATED)
-    return Subalgebra(algebra, span, check=False)  # the loop ends when it is closed
+    span = frontier = start = _span(algebra, rows)
+    # a space with the start in it that the start, by brackets, maps to itself is a subalgebra (the Jacobi identity)
+    while frontier.nrows and span.nrows < n:
+        frontier = products(algebra, frontier if ideal else start, field.identity(n) if ideal else frontier)
+        before, span = span.nrows, field.stack_rows([span, frontier], n).row_space(GENERATED)
+        if span.nrows == before:
+            break
+    return Subalgebra(algebra, span, check=False)
 
 
 def centralizer(algebra: LieAlgebra, rows: Subalgebra | RowsLike) -> Subalgebra:
