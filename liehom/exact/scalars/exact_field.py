@@ -36,7 +36,6 @@ from liehom.exact.scalars.integer_matrices import (
     zero_matrix,
 )
 
-MIN_TALL_RATIO = 2  # of rows to columns, from which independent rows are chosen modulo a prime
 MIN_GUESSED_SIZE = 40  # from which an integral inverse is guessed modulo a prime
 _set = object.__setattr__
 
@@ -96,7 +95,8 @@ class ExactField(Field["ExactMatrix"]):
     def from_integers(self, entries: Sequence[int | flint.fmpz], nrows: int, ncols: int, den: int = 1) -> ExactMatrix:
         """The matrix of shape (nrows, ncols) with these integers, row after row, over a common denominator."""
         first = flint.fmpz_mat(nrows, ncols, entries if isinstance(entries, list) else list(entries))
-        return ExactMatrix(self, (first, *self.zeros(nrows, ncols).parts[1:]), den).normalized()
+        zeros = (flint.fmpz_mat(nrows, ncols) for _ in range(1, self.degree))
+        return ExactMatrix(self, (first, *zeros), den).normalized()
 
     def from_parts(
         self, parts: Sequence[Sequence[int | flint.fmpz]], nrows: int, ncols: int, den: int = 1
@@ -344,24 +344,13 @@ class ExactMatrix(Matrix, Immutable):
         m, ncols = self._field.degree, self.ncols
         if 0 in self.shape:
             return self._field.zeros(0, ncols), []
-        if self.nrows > MIN_TALL_RATIO * ncols:
-            found = self._tall_echelon()
-            if found is not None:
-                return found
+        if self.nrows >= ncols and int(self.modulo().rank()) == ncols:
+            return self._field.identity(ncols), list(range(ncols))  # independent modulo a prime, so independent
         reduced, den, full_rank = bounded_echelon(self._restricted())
         parts = separated(reduced, m, rank := full_rank // m)
         sign = -1 if den < 0 else 1
         matrix = ExactMatrix(self._field, tuple(a * sign for a in parts), int(den) * sign).normalized()
         return matrix, echelon_pivots(matrix.parts, rank)
-
-    def _tall_echelon(self) -> tuple[ExactMatrix, list[int]] | None:
-        """The echelon form of rows that are independent modulo a prime, or None if they do not span all rows."""
-        image, rank = self.modulo().transpose().rref()
-        rows = echelon_pivots((image,), int(rank))
-        if rank == self.ncols:  # independent modulo a prime, so independent
-            return self._field.identity(self.ncols), list(range(self.ncols))
-        reduced, pivots = self.select(rows=rows).echelon()
-        return (reduced, pivots) if self.select(columns=pivots) @ reduced == self else None
 
     def row_space(self, question: str = "") -> ExactMatrix:
         return self.echelon()[0]

@@ -12,7 +12,7 @@ import flint
 from liehom.base.budget import in_time, within
 
 LARGE_SIZE = 60  # from which characteristic polynomials are computed prime by prime
-LONG_BITS, SAMPLED_ENTRIES = 2000, 400
+LONG_BITS, SAMPLED_ENTRIES = 2000, 100
 LONG_ENTRIES = 4000  # bits of an entry from which the size of minors is estimated
 UNINTERRUPTED = "one call of flint that the limit `seconds` does not end, may need {} bytes"
 MAX_DIRECT_ENTRIES = 64  # whose gcd is taken one by one
@@ -72,14 +72,17 @@ def echelon_pivots(parts: Sequence[flint.fmpz_mat | flint.nmod_mat], rank: int) 
 
 def kernel_rows(reduced: flint.fmpz_mat, pivots: Sequence[int], unit: int) -> flint.fmpz_mat:
     """Rows that span the kernel of a reduced echelon form, with the integer `unit` in the free columns."""
-    n, chosen, entries = reduced.ncols(), set(pivots), reduced.entries()
-    free = [j for j in range(n) if j not in chosen]
-    out: list[int | flint.fmpz] = [0] * (len(free) * n)
-    for f, j in enumerate(free):
-        out[f * n + j] = unit
-        for i, pivot in enumerate(pivots):
-            out[f * n + pivot] = -entries[i * n + j]
-    return flint.fmpz_mat(len(free), n, out)
+    n, chosen = reduced.ncols(), set(pivots)
+    units = selecting([j for j in range(n) if j not in chosen], n)
+    return units * unit - units * reduced.transpose() * selecting(pivots, n)
+
+
+def selecting(indices: Sequence[int], n: int) -> flint.fmpz_mat:
+    """The matrix with these rows of the identity (n, n); products with it select rows faster than lists of entries."""
+    units = zero_matrix(len(indices), n)
+    for i, j in enumerate(indices):
+        units[i, j] = 1
+    return units
 
 
 def lifted_inverse(matrix: flint.fmpz_mat, p: int) -> flint.fmpz_mat | None:
@@ -137,7 +140,7 @@ def require_small_answer(matrix: flint.fmpz_mat, degree: int) -> None:
     """Raise `LimitError` if an echelon form of numbers of over `LONG_BITS` bits may need too much memory (Hadamard)."""
     nrows, ncols = matrix.nrows(), matrix.ncols()
     places = range(0, nrows * ncols, 1 + nrows * ncols // SAMPLED_ENTRIES)
-    bits = max((int(matrix[divmod(x, ncols)].bit_length()) for x in places), default=0)
+    bits = max((matrix[divmod(x, ncols)].bit_length() for x in places), default=0)
     if bits > LONG_BITS:
         rank = degree * min(nrows, ncols)
         what = f"the echelon form of a matrix ({nrows}, {ncols}) of numbers of {bits} bits, {UNINTERRUPTED}"
@@ -146,6 +149,10 @@ def require_small_answer(matrix: flint.fmpz_mat, degree: int) -> None:
 
 def separated(restricted: flint.fmpz_mat, degree: int, nrows: int) -> list[flint.fmpz_mat]:
     """Coordinate matrices of a matrix over QQ(b), from the first row of each block of its restriction of scalars."""
+    if degree == 1 and restricted.nrows() == nrows:
+        return [restricted]
+    if degree == 1:
+        return [selecting(range(nrows), restricted.nrows()) * restricted]
     table, width = restricted.entries(), restricted.ncols()
     rows = [table[i * degree * width : (i * degree + 1) * width] for i in range(nrows)]
     return [flint.fmpz_mat(nrows, width // degree, [x for row in rows for x in row[s::degree]]) for s in range(degree)]
@@ -181,7 +188,8 @@ def _weights(n: int) -> flint.fmpz_mat:
 def bounded_echelon(matrix: flint.fmpz_mat) -> tuple[flint.fmpz_mat, flint.fmpz, int]:
     """Reduced echelon form over a denominator, and the rank; `LimitError` if its minors may need too much memory."""
     rank, columns = matrix.nrows(), matrix.ncols()
-    bits = max((int(abs(x)).bit_length() for x in matrix.entries()), default=0)
+    # the bits of one combination of the columns are those of the largest entry, but for a few
+    bits = max((x.bit_length() for x in (matrix * _weights(columns).transpose()).entries()), default=0)
     if bits > LONG_ENTRIES:
         what = f"the echelon form of a {rank} x {columns} matrix, {UNINTERRUPTED}"
         within("memory", 2 * rank * columns * rank * bits // 8, what)

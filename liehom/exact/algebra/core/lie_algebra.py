@@ -402,7 +402,9 @@ class LieAlgebra(Displayed, Immutable):
         >>> lh.gl(2).derived_subalgebra().dimension
         3
         """
-        return self.derived_series()[:2][-1]
+        from liehom.exact.algebra.core.subalgebra import Subalgebra, products
+
+        return Subalgebra(self, products(self, *[self.field.identity(self.dimension)] * 2), check=False)  # an ideal
 
     def derived_series(self) -> list[Subalgebra]:
         """The ideals g, [g, g], [[g, g], [g, g]], ... up to the first that repeats, which is listed once.

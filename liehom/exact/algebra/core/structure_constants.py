@@ -59,13 +59,39 @@ def dense_exact(
 
 # StructureConstants: the bracket as a sparse table, and its contractions with matrices.
 # The table holds c[i, j, k] for i < j, [e_i, e_j] = sum_k c[i, j, k] e_k, as integers over a common denominator (over
-# a number field the integer coordinates of entries). Contractions choose between one dense flint product and sparse
-# integer products that cannot overflow.
+# a number field the integer coordinates of entries). Contractions are products in float64 if a bound proves them exact;
+# else one dense flint product, or sparse integer products that cannot overflow.
 
 M = TypeVar("M", bound=Matrix)
 
 DENSE_DIMENSION = 64  # up to this dimension one dense product is faster than sparse ones, whatever the table
 LARGEST_DENSE = 160  # up to this dimension tables with more than n^2 entries are contracted densely
+EXACT_FLOATS = float(1 << 53)  # float64 holds all integers below this one
+MOST_FLOATS = 1 << 22  # entries of the arrays of one contraction in float64
+
+
+def exact_floats(matrix: ExactMatrix) -> Array | None:
+    """The numerators of a matrix over QQ as float64, or None if one of them is not small."""
+    return _small_floats(matrix.parts[0].entries(), matrix.shape)
+
+
+def _small_floats(values: Sequence[Any], shape: tuple[int, ...]) -> Array | None:
+    """Integers as an array of float64, or None if one of them has more than 32 bits."""
+    array = np.array([int(x) for x in values] if values and not isinstance(values[0], int) else values, dtype=object)
+    try:
+        narrow = array.astype(np.int64)
+    except OverflowError:
+        return None
+    return narrow.astype(np.float64).reshape(shape) if not len(values) or np.abs(narrow).max() < 1 << 32 else None
+
+
+def _from_floats(field: ExactField, values: Array, shape: tuple[int, int], den: int) -> ExactMatrix:
+    """The matrix over QQ with integers in float64 as numerators, row after row."""
+    return field.from_integers(values.astype(np.int64).ravel().tolist(), *shape, den)
+
+
+def _largest(array: Array) -> float:
+    return float(np.abs(array).max(initial=0.0))
 
 
 @final
@@ -98,9 +124,10 @@ class StructureConstants(Immutable):
     parts: tuple[Sequence[int], ...]
     _dense: Matrix | None
     _flat: Matrix | None
+    _floats: Array | bool | None
     _sparse: SparseInteger | None
 
-    __slots__ = ("_dense", "_flat", "_sparse", "den", "dimension", "error", "field", "i", "j", "k", "parts")
+    __slots__ = ("_dense", "_flat", "_floats", "_sparse", "den", "dimension", "error", "field", "i", "j", "k", "parts")
 
     def __init__(
         self, field: Field, dimension: int, entries: Iterable[tuple[int, int, int, Scalar]], error: float | None = None
@@ -122,7 +149,7 @@ class StructureConstants(Immutable):
         self.field, self.dimension, self.parts, self.den = field, dimension, parts, den
         self.i, self.j, self.k = index
         self.error = self._error_of_data() if error is None else error
-        self._dense = self._flat = self._sparse = None
+        self._dense = self._flat = self._floats = self._sparse = None
         return self
 
     @classmethod
@@ -280,14 +307,30 @@ class StructureConstants(Immutable):
             self._sparse = SparseInteger(rows, np.concatenate([self.k, self.k]), values, (n * n, n), self.den)
         return self._sparse
 
+    def floats(self) -> Array | None:
+        """The numerators of a table over QQ as float64 (cached), or None if one of them is not small."""
+        if self._floats is None:
+            small = _small_floats(self.parts[0], (len(self),)) if self.field.exact and self.field.degree == 1 else None
+            self._floats = False if small is None else small
+        return None if isinstance(self._floats, bool) else self._floats
+
     def adjoint(self, x: M) -> M:
         """The matrix (n, n) of y -> [x, y] on columns, for a row matrix x of shape (1, n)."""
         n = self.dimension
+        if isinstance(x, ExactMatrix) and (c := self.floats()) is not None and (w := exact_floats(x)) is not None:
+            if 2 * n * _largest(c) * _largest(w) < EXACT_FLOATS:
+                return cast(M, _from_floats(x.field, self.adjoint_floats(w[0], c), (n, n), self.den * x.den))
         if self.is_dense():
             return (x @ cast(M, self.flat())).reshape(n, n).T
         if self.field.degree > 1:
             return self.contract(x, self.field.identity(n), self.field.identity(n))[0].T
         return cast(M, self._adjoint_sparse(x))
+
+    def adjoint_floats(self, x: Array, values: Array) -> Array:
+        """The matrix (n, n) of y -> [x, y] on columns in float64, for x of shape (n,) and other entries of the table."""
+        n = self.dimension
+        index = np.concatenate([self.k * n + self.j, self.k * n + self.i])
+        return np.bincount(index, np.concatenate([x[self.i] * values, -x[self.j] * values]), n * n).reshape(n, n)
 
     def _adjoint_sparse(self, x: Any) -> Any:
         n, weights = self.dimension, [int(w) for w in x.parts[0].entries()]
@@ -299,6 +342,36 @@ class StructureConstants(Immutable):
             out[k * n + j] += weights[i] * values[t]
             out[k * n + i] -= weights[j] * values[t]
         return exactly(self.field).from_integers(out, n, n, self.den * x.den)
+
+    def contract_floats(self, left: Matrix, right: Matrix, out: Matrix) -> Array | None:
+        """The numerators of `contract` in float64, shape (p, q, r), or None if they may not be exact, or too many."""
+        n, p, q, r = self.dimension, left.nrows, right.nrows, out.ncols
+        few = p < r  # the matrices ad x of the rows x on the left are made one by one
+        size = p * max(n, q) * n if few else max(n, p) * max(n, q) * r
+        if 0 in (n, p, q, r) or size > MOST_FLOATS or (c := self.floats()) is None:
+            return None
+        one = self.field.identity(n)
+        # None stands for the identity
+        factors = [None if a == one else exact_floats(a) for a in (left, right, out) if isinstance(a, ExactMatrix)]
+        if any(f is None and a != one for f, a in zip(factors, (left, right, out), strict=True)):
+            return None
+        x, y, z = factors
+        sums = [1.0 if f is None else float(np.abs(f).sum(axis=1).max()) for f in (x, y)]
+        if n * _largest(c) * (1.0 if z is None else _largest(z)) * sums[0] * sums[1] * (2 * n if few else 1) >= EXACT_FLOATS:
+            return None
+        if few and x is not None:
+            array = np.stack([self.adjoint_floats(row, c).T for row in x])
+            array = array if y is None else np.matmul(y, array)
+            return array if z is None else array @ z
+        array = np.zeros((n, n, r))
+        if z is None:
+            array[self.i, self.j, self.k] = c
+        elif len(self):
+            starts = np.flatnonzero(np.diff(self.i * n + self.j, prepend=-1))
+            array[self.i[starts], self.j[starts]] = np.add.reduceat(c[:, None] * z[self.k], starts, axis=0)
+        array -= array.transpose(1, 0, 2)
+        array = array if x is None else (x @ array.reshape(n, n * r)).reshape(p, n, r)
+        return array if y is None else np.matmul(y, array)
 
     def contract(self, left: M, right: M, out: M) -> list[M]:
         """For each row a of `left`, the matrix with rows [left_a, right_b] @ out.
@@ -320,6 +393,9 @@ class StructureConstants(Immutable):
             return [self.field.zeros(q, r) for _ in range(p)]
         if isinstance(left, FloatMatrix):
             return cast(list[M], self._contract_floats(left, right, out).reshape(p, q * r).split_rows(q, r))
+        if (floats := self.contract_floats(left, right, out)) is not None:
+            den = self.den * math.prod(a.den for a in (left, right, out) if isinstance(a, ExactMatrix))
+            return cast(list[M], [_from_floats(exactly(self.field), block, (q, r), den) for block in floats])
         if self.is_dense() or self.field.degree > 1:
             if self.field.degree == 1:
                 return self._contract_rational(left, right, out)
@@ -361,13 +437,20 @@ class StructureConstants(Immutable):
         one = cast(M, self.field.identity(self.dimension))
         if isinstance(left, FloatMatrix) and left.nrows and right.nrows:
             return cast(M, self._contract_floats(left, right, one))
+        if isinstance(left, ExactMatrix) and (floats := self.contract_floats(left, right, one)) is not None:
+            den = self.den * left.den * cast(ExactMatrix, right).den
+            return cast(M, _from_floats(left.field, floats, (left.nrows * right.nrows, self.dimension), den))
         return self.field.stack_rows(self.contract(left, right, one), self.dimension)
 
     def bracket_columns(self, left: M, out: M) -> M:
-        """The matrix (n, p * r) of x -> [left_a, x] @ out for all a, acting on rows x."""
+        """The matrix (n, p * r) of x -> [left_a, x] @ out for all a, acting on rows x; columns that are 0 may be left out."""
         n, p, one = self.dimension, left.nrows, cast(M, self.field.identity(self.dimension))
         if isinstance(left, FloatMatrix) and p and n and out.ncols:
             return cast(M, self._contract_floats(left, one, out).regroup(p, n, out.ncols))
+        if isinstance(left, ExactMatrix) and (floats := self.contract_floats(left, one, out)) is not None:
+            wide = floats.transpose(1, 0, 2).reshape(n, p * out.ncols)
+            wide = wide[:, wide.any(axis=0)]
+            return cast(M, _from_floats(left.field, wide, wide.shape, self.den * left.den * cast(ExactMatrix, out).den))
         blocks = self.contract(left, one, out)
         return self.field.stack_columns(blocks, n) if blocks else self.field.zeros(n, 0)
 
@@ -381,6 +464,9 @@ class StructureConstants(Immutable):
         if isinstance(left, FloatMatrix):
             largest = self._contract_floats(left, right, out).first_nonzero_row()
             return None if largest is None else divmod(largest, right.nrows)
+        if (floats := self.contract_floats(left, right, out)) is not None:
+            nonzero = np.flatnonzero(floats.any(axis=2))
+            return (*map(int, divmod(int(nonzero[0]), right.nrows)),) if len(nonzero) else None
         if self.is_dense() or self.field.degree > 1:
             rows = enumerate(block.first_nonzero_row() for block in self.contract(left, right, out))
             return next(((a, b) for a, b in rows if b is not None), None)

@@ -24,11 +24,11 @@ from liehom.base.errors import (
 from liehom.base.objects import Displayed, Immutable
 from liehom.base.typing import VectorLike
 from liehom.exact.algebra.core.lie_algebra import LieAlgebra
-from liehom.exact.algebra.core.structure_constants import StructureConstants
 from liehom.exact.algebra.core.tables import RowsLike, coefficients
 from liehom.exact.scalars.exact_field import ExactMatrix
 from liehom.exact.scalars.field import Field, Matrix, Scalar, rows_of
 from liehom.exact.scalars.floating import FloatMatrix
+from liehom.exact.scalars.modular import independent_columns
 from liehom.exact.scalars.subspaces import Quotient, Subspace, echelon_quotient, quotient
 
 if TYPE_CHECKING:
@@ -187,15 +187,17 @@ class Subalgebra(Displayed, Immutable):
         >>> lh.gl(2).subalgebra([[0, 1, 0, 0], [1, 0, 0, -1]]).as_algebra().dimension
         2
         """
-        k, field = self.dimension, self.algebra.field
-        if isinstance(self.basis, FloatMatrix):
-            coordinates = self.basis.solve(field.identity(k))
-            # A closed subspace of a Lie algebra: the axioms hold.
-            return LieAlgebra(self.algebra.table.changed(self.basis, coordinates), name=name, check=False)
-        brackets = self.algebra.table.contract(self.basis, self.basis, field.identity(self.algebra.dimension))
-        blocks = [self.basis.T.solve(block.T).T for block in brackets]
         # A closed subspace of a Lie algebra: the axioms hold.
-        return LieAlgebra(StructureConstants.from_blocks(field, k, blocks), name=name, check=False)
+        return LieAlgebra(self.algebra.table.changed(self.basis, self._coordinates()), name=name, check=False)
+
+    def _coordinates(self) -> Matrix:
+        """A matrix (n, k) that reads the coordinates, in the basis, of the rows that are in h."""
+        basis = self.basis
+        if not isinstance(basis, ExactMatrix):
+            return basis.solve(self.algebra.field.identity(self.dimension))
+        columns = independent_columns(basis)
+        units = basis.field.identity(basis.ncols).select(columns=columns)
+        return units @ basis.select(columns=columns).inverse()
 
     def is_ideal(self) -> bool:
         """Whether [g, h] lies in h."""
@@ -351,61 +353,62 @@ def products(algebra: LieAlgebra, left: M, right: M) -> M:
     n, table = algebra.dimension, algebra.table
     if algebra.field.exact and left.nrows > SAMPLES:
         # the span of [x, right] for a few combinations x of `left`, if all of [left, right] is in it
-        span: Any = algebra.field.stack_rows([right @ algebra.ad(x).T for x in _samples(left)], n).row_space()
+        span: Any = table.bracket_rows(_samples(left), right).row_space()
         if span.nrows == n or table.first_nonzero(left, right, echelon_quotient(span).projection) is None:
             return cast(M, span)
     return table.bracket_rows(left, right).row_space("the dimension of a span of brackets")
 
 
-def _samples(rows: M) -> list[M]:
-    """`SAMPLES` random combinations of rows, each (1, n)."""
+def _samples(rows: M) -> M:
+    """`SAMPLES` random combinations of rows, as rows."""
     rng = random.Random(rows.nrows)
-    weights = [[rng.randint(-9, 9) for _ in range(rows.nrows)] for _ in range(SAMPLES)]
-    combined = rows.field.matrix(weights) @ rows
-    return [combined.select(rows=[i]) for i in range(SAMPLES)]
+    field: Any = rows.field
+    return cast(M, field.from_integers([rng.randint(-9, 9) for _ in range(SAMPLES * rows.nrows)], SAMPLES, rows.nrows) @ rows)
 
 
 def generated(algebra: LieAlgebra, rows: Subalgebra | RowsLike, *, ideal: bool = False) -> Subalgebra:
     """Implements `LieAlgebra.subalgebra_generated_by` and, if `ideal`, `LieAlgebra.ideal_generated_by`."""
     n, field = algebra.dimension, algebra.field
-    span, before = _span(algebra, rows), -1
-    while before < span.nrows:
-        before = span.nrows
-        brackets = products(algebra, span, field.identity(n) if ideal else span)
-        span = field.stack_rows([span, brackets], n).row_space(GENERATED)
-    return Subalgebra(algebra, span, check=False)  # the loop ends when it is closed
+    span = frontier = start = _span(algebra, rows)
+    # a space with the start in it that the start, by brackets, maps to itself is a subalgebra (the Jacobi identity)
+    while frontier.nrows and span.nrows < n:
+        frontier = products(algebra, frontier if ideal else start, field.identity(n) if ideal else frontier)
+        before, span = span.nrows, field.stack_rows([span, frontier], n).row_space(GENERATED)
+        if span.nrows == before:
+            break
+    return Subalgebra(algebra, span, check=False)
 
 
 def centralizer(algebra: LieAlgebra, rows: Subalgebra | RowsLike) -> Subalgebra:
     """Implements `LieAlgebra.centralizer`."""
-    n, field = algebra.dimension, algebra.field
     span = _span(algebra, rows)
-    if isinstance(span, ExactMatrix) and span.nrows > SAMPLES:
-        # the space that commutes with a few combinations is the centralizer if it commutes with all rows
-        basis = field.stack_rows([algebra.ad(x) for x in _samples(span)], n).null_space()
-        if algebra.table.first_nonzero(basis, span, field.identity(n)) is None:
+    return _bracketed_into(algebra, span, algebra.field.identity(algebra.dimension), "the dimension of a centralizer")
+
+
+def _bracketed_into(algebra: LieAlgebra, rows: Matrix, projection: Matrix, question: str) -> Subalgebra:
+    """The x with [r, x] in the kernel of a projection for all rows r; it must be known to be closed."""
+    table = algebra.table
+    if isinstance(rows, ExactMatrix) and rows.nrows > SAMPLES:
+        # the solutions for a few combinations are the solutions if they are solutions for all rows
+        basis: Matrix = table.bracket_columns(_samples(rows), projection).left_null_space(question)
+        if table.first_nonzero(basis, rows, projection) is None:
             return Subalgebra(algebra, basis, check=False)
-    conditions = algebra.table.bracket_columns(span, field.identity(n))
-    # closed by the Jacobi identity
-    return Subalgebra(algebra, conditions.left_null_space("the dimension of a centralizer"), check=False)
+    return Subalgebra(algebra, table.bracket_columns(rows, projection).left_null_space(question), check=False)
 
 
 def normalizer(subalgebra: Subalgebra) -> Subalgebra:
     """Implements `LieAlgebra.normalizer`."""
-    conditions = subalgebra.algebra.table.bracket_columns(subalgebra._rows(), subalgebra._projection())
-    # closed by the Jacobi identity
-    return Subalgebra(subalgebra.algebra, conditions.left_null_space("the dimension of a normalizer"), check=False)
+    rows, projection = subalgebra._rows(), subalgebra._projection()
+    return _bracketed_into(subalgebra.algebra, rows, projection, "the dimension of a normalizer")  # closed by Jacobi
 
 
 def upper_central_series(algebra: LieAlgebra) -> list[Subalgebra]:
     """Implements `LieAlgebra.upper_central_series`."""
-    n, field = algebra.dimension, algebra.field
-    terms = [Subalgebra(algebra, field.zeros(0, n), check=False)]
+    one = algebra.field.identity(algebra.dimension)
+    terms = [Subalgebra(algebra, algebra.field.zeros(0, algebra.dimension), check=False)]
     while True:
-        # x with [e_i, x] in the last term for all i
-        conditions = algebra.table.bracket_columns(field.identity(n), terms[-1]._projection())
         # an ideal, as the last term is
-        following = Subalgebra(algebra, conditions.left_null_space("the upper central series"), check=False)
+        following = _bracketed_into(algebra, one, terms[-1]._projection(), "the upper central series")
         if following.dimension <= terms[-1].dimension:
             return terms
         terms.append(following)

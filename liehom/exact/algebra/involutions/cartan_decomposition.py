@@ -49,8 +49,8 @@ from liehom.exact.algebra.involutions.rational_involution import (
     rational_involution,
 )
 from liehom.exact.algebra.structure.ideals import CentroidField, centroid_field, direct_sum_decomposition
-from liehom.exact.algebra.structure.root_spaces import cartan_subalgebra
-from liehom.exact.scalars.exact_field import ExactField
+from liehom.exact.algebra.structure.root_spaces import cartan_subalgebra, diagonal_weights, simple_roots
+from liehom.exact.scalars.exact_field import ExactField, as_exact
 from liehom.exact.scalars.field import Field, Matrix, MatrixLike
 from liehom.exact.scalars.floating import FloatField
 from liehom.exact.scalars.subspaces import Subspace
@@ -151,9 +151,12 @@ def _decomposed(algebra: LieAlgebra, theta: Matrix) -> CartanDecomposition:
 def _rational(algebra: LieAlgebra, *, long: bool = True) -> Matrix | None:
     """A Cartan involution over the field, on columns, or None; `long` adds random automorphisms."""
     n = algebra.dimension
-    rank = cartan_subalgebra(algebra).dimension
+    cartan = cartan_subalgebra(algebra)
+    rank, candidate = cartan.dimension, _split_involution(algebra, cartan)
+    if candidate is not None and is_cartan_involution(algebra, candidate):
+        return candidate
     theta = approximate_involution(algebra, rank)
-    candidate: Matrix | None = None if theta is None else _searched(algebra, theta, 1)
+    candidate = None if theta is None else _searched(algebra, theta, 1)
     if candidate is not None:
         return candidate
     if n == 3:
@@ -171,6 +174,34 @@ def _rational(algebra: LieAlgebra, *, long: bool = True) -> Matrix | None:
     if candidate is not None and is_cartan_involution(algebra, candidate):
         return candidate
     return _in_a_large_order(algebra, rank, theta, long)
+
+
+def _split_involution(algebra: LieAlgebra, cartan: Subalgebra) -> Matrix | None:
+    """The involution e_i -> -f_i, f_i -> -e_i, on columns, in a basis of root vectors; None in other bases."""
+    torus, n = as_exact(cartan.basis), algebra.dimension
+    field, weights = torus.field, diagonal_weights(algebra, torus)
+    place = {} if weights is None else {w: field.unit(n, j) for j, w in enumerate(weights) if any(w)}
+    if weights is None or len(place) + torus.nrows != n:
+        return None
+    simple = [list(place)[i] for i in simple_roots(field.matrix(list(place)))]
+    up, down, raise_, lower = {}, {}, {}, {}
+    for a in simple:
+        e, f = place[a], place[tuple(-x for x in a)]
+        image = e @ algebra.ad(f @ algebra.ad(e).T).T  # [[e, f], e] = alpha([e, f]) e
+        f = f.scale(2 / next(x for x in image.row(0) if x != 0))
+        up[a], down[a] = -e, f
+        raise_[a], lower[a] = algebra.ad(e).T, algebra.ad(-f).T
+    frontier = simple
+    while frontier:
+        new = {}
+        for b in frontier:
+            for a in simple:
+                c = tuple(x + y for x, y in zip(a, b, strict=True))
+                if c in place and c not in up:
+                    up[c], down[c], new[c] = up[b] @ raise_[a], down[b] @ lower[a], c
+        frontier = list(new)
+    rows = field.stack_rows([torus, *up.values(), *down.values()], n)
+    return (rows.inverse() @ field.stack_rows([-torus, *down.values(), *up.values()], n)).T
 
 
 def _constructed(algebra: LieAlgebra, theta: Array) -> Matrix | None:

@@ -14,15 +14,15 @@ import numpy as np
 from liehom.base.budget import in_time
 from liehom.base.errors import InputError, InternalError, SingularError, UndecidedError, displayed
 from liehom.exact.algebra.core.lie_algebra import LieAlgebra
-from liehom.exact.algebra.core.subalgebra import Subalgebra, independent_rows
+from liehom.exact.algebra.core.subalgebra import Subalgebra
 from liehom.exact.algebra.involutions.cartan_involution import approximate_involution, orthonormal_frame
 from liehom.exact.algebra.involutions.rational_involution import generic_nilpotent, lattice_order
-from liehom.exact.algebra.roots.diagrams import gram_to_cartan, simple_system
+from liehom.exact.algebra.roots.diagrams import gram_to_cartan
 from liehom.exact.algebra.roots.real_form import RealForm
 from liehom.exact.algebra.roots.root_system import Root, isomorphisms
 from liehom.exact.algebra.structure.centroid import evaluate, exact_field, minimal_polynomial
 from liehom.exact.algebra.structure.identification import SimplePart, simple_parts
-from liehom.exact.algebra.structure.root_spaces import cartan_subalgebra
+from liehom.exact.algebra.structure.root_spaces import cartan_subalgebra, diagonal_weights, simple_roots
 from liehom.exact.scalars.exact_field import ExactMatrix, as_exact
 from liehom.exact.scalars.field import Scalar
 from liehom.exact.scalars.subspaces import integral_basis, short_basis
@@ -71,6 +71,8 @@ def maximal_split_torus(algebra: LieAlgebra) -> ExactMatrix:
 def eigenvalues(algebra: LieAlgebra, x: ExactMatrix) -> list[Scalar] | None:
     """The eigenvalues of ad x if it is diagonalizable over the field of the algebra, else None."""
     field, action = x.field, algebra.ad(x)
+    if (weights := diagonal_weights(algebra, x)) is not None:
+        return sorted({value for (value,) in weights}, key=field.to_float)
     floats = np.linalg.eigvals(action.to_numpy())
     if np.abs(floats.imag).max() > REAL * np.abs(floats).max():
         return None
@@ -229,7 +231,7 @@ def _of_simple(algebra: LieAlgebra, part: SimplePart) -> RestrictedRootSpaces:
     zero = (torus.field.zero,) * torus.nrows
     values = [value for value in weights if value != zero]
     sizes = [weights[value].nrows for value in values]
-    simple = _simple_roots(torus.field.matrix(values))
+    simple = simple_roots(torus.field.matrix(values))
     chosen = torus.field.matrix([values[i] for i in simple])
     gram = (torus @ as_exact(algebra.killing_form()) @ torus.T).inverse()
     inner = (chosen @ gram @ chosen.T).to_rows()
@@ -246,7 +248,12 @@ def _weight_spaces(algebra: LieAlgebra, torus: ExactMatrix) -> dict[tuple[Scalar
     """The joint eigenspaces of a split torus, by the eigenvalues of its basis, in the order of their pivots."""
     field, n = torus.field, algebra.dimension
     spaces: dict[tuple[Scalar, ...], ExactMatrix] = {(): field.identity(n)}
-    for i in range(torus.nrows):
+    if (weights := diagonal_weights(algebra, torus)) is not None:
+        places: dict[tuple[Scalar, ...], list[int]] = {}
+        for j, weight in enumerate(weights):
+            places.setdefault(weight, []).append(j)
+        spaces = {weight: spaces[()].select(rows=own) for weight, own in places.items()}
+    for i in range(torus.nrows if weights is None else 0):
         x = torus.select(rows=[i])
         action, values = algebra.ad(x).T, eigenvalues(algebra, x)
         if values is None:
@@ -267,15 +274,6 @@ def _weight_spaces(algebra: LieAlgebra, torus: ExactMatrix) -> dict[tuple[Scalar
     pivots_of = {value: space.echelon()[1] for value, space in spaces.items()}
     signs = {value: [-field.sign(x) for x in value] for value in spaces}
     return {value: spaces[value] for value in sorted(spaces, key=lambda value: (pivots_of[value], signs[value]))}
-
-
-def _simple_roots(values: ExactMatrix) -> list[int]:
-    """The indices of the simple ones among the roots with these values (m, r), in the order of the rows."""
-    base = values.select(rows=independent_rows(values))
-    coordinates = values @ base.inverse()  # rational: fractions with one denominator
-    roots = [tuple(int(coordinates.parts[0][i, j]) for j in range(values.ncols)) for i in range(values.nrows)]
-    index = {root: i for i, root in enumerate(roots)}
-    return sorted(index[root] for root in simple_system(roots, lambda a: a[::-1]))
 
 
 def _numbering(

@@ -6,8 +6,10 @@ import itertools
 import math
 from bisect import bisect_left
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from functools import cache
 from math import comb, lcm
+from operator import itemgetter
 from typing import Any, TypeAlias, final
 
 import numpy as np
@@ -18,10 +20,11 @@ from liehom.base.typing import ScalarLike, VectorLike
 from liehom.exact.algebra.core.lie_algebra import LieAlgebra
 from liehom.exact.algebra.linear.closure import acting_matrices
 from liehom.exact.algebra.linear.linear_bases import require_size
-from liehom.exact.scalars.exact_field import ExactField, as_exact
+from liehom.exact.scalars.exact_field import ExactField, ExactMatrix, as_exact
 from liehom.exact.scalars.field import Field, MatricesLike, Matrix
 from liehom.exact.scalars.floating import FloatField, FloatMatrix
 from liehom.exact.scalars.modular import pivot_columns
+from liehom.exact.scalars.sparse import matrix_from_entries
 from liehom.exact.scalars.subspaces import Subspace
 
 # The Chevalley-Eilenberg complex of a Lie algebra g with values in a module V, as matrices.
@@ -32,7 +35,13 @@ from liehom.exact.scalars.subspaces import Subspace
 #                         + sum_{a < b} (-1)^(a+b) w([x_a, x_b], ..., no x_a, no x_b, ...).
 
 MAX_ENTRIES = 30_000_000
-"""Largest number of entries of a differential, a dense matrix."""
+"""Largest number of entries of a dense matrix: a differential, or a block of it."""
+
+MAX_COCHAINS = 300_000
+"""Largest dimension of a space of cochains to which a differential is computed."""
+
+Tables: TypeAlias = tuple[list[dict[tuple[int, int], Any]], int]
+"""Numerators by row and column, one mapping for each coordinate of the field, and their common denominator."""
 
 
 @final
@@ -41,11 +50,12 @@ class CochainComplex:
 
     size: int
 
-    __slots__ = ("_differentials", "algebra", "matrices", "size")
+    __slots__ = ("_differentials", "algebra", "matrices", "size", "tables")
 
     def __init__(self, algebra: LieAlgebra, matrices: MatricesLike | None = None, *, size: int | None = None) -> None:
         self.algebra: LieAlgebra = algebra
         self._differentials: dict[int, Matrix] = {}
+        self.tables = cache(self._tables)
         self.matrices: tuple[Matrix, ...] | None = None
         self.size = 1
         if matrices is not None:
@@ -77,16 +87,40 @@ class CochainComplex:
         field: Field[Matrix] = self.algebra.field
         if 0 in shape:
             return field.zeros(*shape)
-        brackets = self._from_brackets(degree, shape)
-        trivial = all(a.is_zero() for a in self.matrices or ())
-        return brackets if trivial else brackets + self._from_action(degree, shape)
+        tables, den = self.tables(degree)
+        if isinstance(field, ExactField):
+            return block_of(field, tables, den, range(shape[0]), range(shape[1]))
+        dense = np.zeros(shape)
+        for place, value in tables[0].items():
+            dense[place] = value
+        n, table = self.algebra.dimension, self.algebra.table
+        # a constant occurs in at most comb(n - 2, degree - 1) m entries, an entry is a sum of at most n constants
+        occurrences = comb(max(n - 2, 0), max(degree - 1, 0)) * self.size * n
+        action = math.hypot(*(a.error for a in self.matrices or () if isinstance(a, FloatMatrix)))
+        error = math.hypot(table.error * math.sqrt(occurrences), action * math.sqrt(comb(n - 1, degree)))
+        return FloatMatrix(field, dense, error)
 
-    def _from_brackets(self, degree: int, shape: tuple[int, int]) -> Matrix:
+    def _tables(self, degree: int) -> Tables:
+        """The non-zero entries of d on k-cochains."""
+        if (length := self.length(degree + 1)) > MAX_COCHAINS:
+            raise InputError(
+                f"the cochains of degree {degree + 1} have {length} coordinates, more than {MAX_COCHAINS}; a smaller "
+                "degree is cheaper"
+            )
+        field, table = self.algebra.field, self.algebra.table
+        den, action = _integral(self.matrices or (), field)
+        common = lcm(den, table.den)
+        parts: list[dict[tuple[int, int], Any]] = [{} for _ in table.parts]
+        if 0 <= degree < self.algebra.dimension:
+            self._from_brackets(parts, degree, common // table.den)
+            self._from_action(parts, degree, common // den, action)
+        return [{place: value for place, value in part.items() if value} for part in parts], common
+
+    def _from_brackets(self, parts: list[dict[tuple[int, int], Any]], degree: int, factor: int) -> None:
         """The second sum of d: each c[i, j, l] and each set R without i, j, l map R + l to R + i + j."""
         table, n, m = self.algebra.table, self.algebra.dimension, self.size
         source = {indices: x for x, indices in enumerate(self.index_tuples(degree))}
         target = {indices: x for x, indices in enumerate(self.index_tuples(degree + 1))}
-        parts = [[0] * (shape[0] * shape[1]) for _ in table.parts]
         constants = list(zip(table.i.tolist(), table.j.tolist(), table.k.tolist(), strict=True))
         for rest in itertools.combinations(range(n), degree - 1) if degree else ():
             for entry, (i, j, l) in enumerate(constants):
@@ -95,39 +129,45 @@ class CochainComplex:
                 at = bisect_left(rest, i), bisect_left(rest, j), bisect_left(rest, l)
                 moved = (*rest[: at[2]], l, *rest[at[2] :])
                 grown = (*rest[: at[0]], i, *rest[at[0] : at[1]], j, *rest[at[1] :])
-                negative = (at[0] + at[1] + 1 + at[2]) % 2
-                first = source[moved] * m * shape[1] + target[grown] * m
+                sign = -factor if (at[0] + at[1] + 1 + at[2]) % 2 else factor
+                row, column = source[moved] * m, target[grown] * m
                 for part, values in zip(parts, table.parts, strict=True):
-                    for u in range(m):
-                        part[first + u * (shape[1] + 1)] += -values[entry] if negative else values[entry]
-        # a constant occurs in at most comb(n - 2, degree - 1) m entries, an entry is a sum of at most n constants
-        occurrences = comb(max(n - 2, 0), max(degree - 1, 0)) * m * n
-        return _matrix(self.algebra.field, parts, shape, table.den, table.error * math.sqrt(occurrences))
+                    for u in range(m if values[entry] else 0):
+                        place = row + u, column + u
+                        part[place] = part.get(place, 0) + sign * values[entry]
 
-    def _from_action(self, degree: int, shape: tuple[int, int]) -> Matrix:
+    def _from_action(
+        self,
+        parts: list[dict[tuple[int, int], Any]],
+        degree: int,
+        factor: int,
+        action: list[list[list[tuple[int, Any]]]],
+    ) -> None:
         """The first sum of d: the matrix of e_t maps S to S + t."""
-        m, field = self.size, self.algebra.field
+        m = self.size
         source = {indices: x for x, indices in enumerate(self.index_tuples(degree))}
-        den, action = _integral(self.matrices or (), field)
-        parts: list[list[Any]] = [[0] * (shape[0] * shape[1]) for _ in range(field.degree)]
-        for x, grown in enumerate(self.index_tuples(degree + 1)):
+        for x, grown in enumerate(self.index_tuples(degree + 1) if action else ()):
             for a, t in enumerate(grown):
-                start = source[grown[:a] + grown[a + 1 :]] * m
+                start, sign = source[grown[:a] + grown[a + 1 :]] * m, -factor if a % 2 else factor
                 for part, values in zip(parts, action[t], strict=True):
                     for index, value in values:
                         u, v = divmod(index, m)
-                        part[(start + v) * shape[1] + x * m + u] += -value if a % 2 else value
-        error = math.hypot(*(a.error for a in self.matrices or () if isinstance(a, FloatMatrix)))
-        return _matrix(field, parts, shape, den, error * math.sqrt(comb(self.algebra.dimension - 1, degree)))
+                        place = start + v, x * m + u
+                        part[place] = part.get(place, 0) + sign * value
 
 
-def _matrix(field: Field, parts: Sequence[Sequence[Any]], shape: tuple[int, int], den: int, error: float) -> Matrix:
-    """The matrix with these numerators; over floats with this error."""
-    if isinstance(field, FloatField):
-        return FloatMatrix(field, np.array(parts[0], dtype=np.float64).reshape(shape), error)
-    if not isinstance(field, ExactField):
-        raise InputError(f"cochains over {field} are not supported")
-    return field.from_parts(parts, *shape, den)
+def block_of(
+    field: ExactField,
+    tables: Sequence[Mapping[tuple[int, int], Any]],
+    den: int,
+    rows: Sequence[int],
+    columns: Sequence[int],
+) -> ExactMatrix:
+    """The matrix of these rows and columns, which hold all the entries of the tables."""
+    row, column = ({x: i for i, x in enumerate(chosen)} for chosen in (rows, columns))
+    n = len(columns)
+    flat = [{row[r] * n + column[c]: value for (r, c), value in table.items()} for table in tables]
+    return matrix_from_entries(field, flat, len(rows), n, den)
 
 
 def _integral(matrices: Sequence[Matrix], field: Field) -> tuple[int, list[list[list[tuple[int, Any]]]]]:
@@ -228,7 +268,14 @@ class Cohomology(Immutable):
 
     def is_cocycle(self, cochain: CochainLike) -> bool:
         """Whether d w = 0 for a cochain w."""
-        return bool((self._row(cochain) @ self.cochains.differential(self.degree)).is_zero())
+        row, field = self._row(cochain), self.algebra.field
+        if not isinstance(field, ExactField):
+            return bool((row @ self.cochains.differential(self.degree)).is_zero())
+        support = [i for i, x in enumerate(row.row(0)) if x != 0]
+        (tables, den), inside = self.cochains.tables(self.degree), set(support)
+        parts = [{place: x for place, x in part.items() if place[0] in inside} for part in tables]
+        columns = sorted({column for part in parts for _, column in part})
+        return (as_exact(row).select(columns=support) @ block_of(field, parts, den, support, columns)).is_zero()
 
     def is_coboundary(self, cochain: CochainLike) -> bool:
         """Whether a cochain w is d v for some v."""
@@ -347,12 +394,63 @@ def cohomology(
     return Cohomology(cochains, degree, _Solver(cochains).complement(degree))
 
 
+@dataclass(slots=True)
+class _Block:
+    """A direct summand of C^(k-1) -> C^k -> C^(k+1), spanned by cochains of the basis."""
+
+    before: Tables
+    after: Tables
+    low: list[int]  # indices of cochains of degree k - 1
+    middle: list[int]
+    high: list[int]
+
+    def differentials(self, field: ExactField) -> tuple[ExactMatrix, ExactMatrix]:
+        """The two maps of the summand."""
+        if len(self.middle) * max(len(self.low), len(self.high)) > MAX_ENTRIES:
+            raise InputError(
+                f"a block of the differential has {len(self.middle)} rows and {len(self.high)} columns, more than "
+                f"{MAX_ENTRIES} entries; a smaller degree is cheaper"
+            )
+        before = block_of(field, *self.before, self.low, self.middle)
+        return before, block_of(field, *self.after, self.middle, self.high)
+
+
+def _blocks(cochains: CochainComplex, degree: int) -> list[_Block]:
+    """The finest decomposition into summands that are spanned by cochains of the basis: weights separate these."""
+    (before, first_den), (after, second_den) = cochains.tables(degree - 1), cochains.tables(degree)
+    parent = {(1, x): (1, x) for x in range(cochains.length(degree))}
+
+    def root(x: tuple[int, int]) -> tuple[int, int]:
+        parent.setdefault(x, x)
+        while parent[x] != x:
+            parent[x] = parent[parent[x]]
+            x = parent[x]
+        return x
+
+    for step, tables in enumerate((before, after)):
+        for row, column in (place for part in tables for place in part):
+            parent[root((step, row))] = root((step + 1, column))
+    found: dict[tuple[int, int], tuple[list[int], list[int], list[int]]] = {}
+    for level, x in sorted(parent):
+        found.setdefault(root((level, x)), ([], [], []))[level].append(x)
+    made = {
+        key: _Block(([{} for _ in after], first_den), ([{} for _ in after], second_den), *own)
+        for key, own in found.items()
+    }
+    for step, tables in enumerate((before, after)):
+        for s, part in enumerate(tables):
+            for place, value in part.items():
+                block = made[root((step, place[0]))]
+                (block.after if step else block.before)[0][s][place] = value
+    return list(made.values())
+
+
 class _Solver:
     """Complements of the coboundaries in the cocycles, degree by degree, over an exact field."""
 
     def __init__(self, cochains: CochainComplex) -> None:
         self.cochains = cochains
-        self.complement, self.pivots = cache(self._complement), cache(self._pivots)
+        self.complement = cache(self._complement)
 
     def rank(self, degree: int) -> int:
         """The exact rank of d on k-cochains, an int."""
@@ -362,26 +460,51 @@ class _Solver:
         # C^k = coboundaries + complement + (a complement of the kernel of d)
         return length - self.rank(degree - 1) - int(self.complement(degree).nrows)
 
-    def _pivots(self, degree: int, attempt: int) -> list[int]:
-        """Indices of columns of d that are a basis of its column space modulo a prime."""
-        matrix = self.cochains.differential(degree)
-        return [] if 0 in matrix.shape else pivot_columns(as_exact(matrix).modulo(attempt))
-
     def _complement(self, degree: int) -> Matrix:
         """Cocycles that are a basis of the cocycles modulo the coboundaries, as rows."""
         length = self.cochains.length(degree)
-        field: Field[Matrix] = self.cochains.algebra.field
+        field = as_exact(self.cochains.algebra.field.zeros(0, 0)).field
+        blocks = _blocks(self.cochains, degree)
+        maps = [block.differentials(field) for block in blocks]
         for attempt in range(MAX_PRIMES):
-            bounding, needed = self.pivots(degree - 1, attempt), self.pivots(degree, attempt)
-            if len(bounding) + len(needed) == length:
+            pivots = [tuple(_pivots(matrix, attempt) for matrix in pair) for pair in maps]
+            bounding = sum(len(first) for first, _ in pivots)
+            if bounding + sum(len(second) for _, second in pivots) == length:
                 # the ranks modulo a prime are at most the true ones, whose sum is at most the length
                 return field.zeros(0, length)
-            if len(bounding) < self.rank(degree - 1):
+            if bounding < self.rank(degree - 1):
                 continue
-            kept = sorted(set(range(length)) - set(bounding))
-            after = self.cochains.differential(degree)
-            solved = after.select(kept, needed).left_null_space() if needed else field.identity(len(kept))
-            rows = solved @ field.identity(length).select(rows=kept)
-            if (rows @ after).is_zero():
-                return rows
+            chosen = zip(blocks, maps, pivots, strict=True)
+            cocycles = [(b, _cocycles(after, *own)) for b, (_, after), own in chosen if sum(map(len, own)) < len(b.middle)]
+            if all(rows is not None for _, rows in cocycles):
+                return _placed([(b.middle, rows) for b, rows in cocycles if rows is not None], field, length)
         raise InternalError(f"no prime was usable for the cohomology of {self.cochains.algebra!r} in degree {degree}")
+
+
+def _pivots(matrix: ExactMatrix, attempt: int) -> list[int]:
+    """Indices of columns that are a basis of the column space modulo a prime."""
+    return [] if 0 in matrix.shape else pivot_columns(matrix.modulo(attempt))
+
+
+def _cocycles(after: ExactMatrix, bounding: list[int], needed: list[int]) -> ExactMatrix | None:
+    """The cocycles that are 0 at the indices `bounding`, as rows, from the `needed` equations; None if these miss one."""
+    field, count = after.field, after.nrows
+    kept = sorted(set(range(count)) - set(bounding))
+    solved = after.select(kept, needed).left_null_space() if needed else field.identity(len(kept))
+    rows = solved @ field.identity(count).select(rows=kept)
+    return rows if (rows @ after).is_zero() else None
+
+
+def _placed(parts: list[tuple[list[int], ExactMatrix]], field: ExactField, length: int) -> ExactMatrix:
+    """Rows on some of the coordinates each as rows on all, ordered by their last coordinate that is not 0."""
+    den = lcm(*(rows.den for _, rows in parts))
+    entries: list[tuple[int, list[dict[int, Any]]]] = []
+    for places, rows in parts:
+        for i in range(rows.nrows):
+            own = [{c: a[i, j] * (den // rows.den) for j, c in enumerate(places) if a[i, j]} for a in rows.parts]
+            entries.append((max(c for part in own for c in part), own))
+    entries.sort(key=itemgetter(0))
+    tables = [
+        {r * length + c: x for r, (_, own) in enumerate(entries) for c, x in own[s].items()} for s in range(field.degree)
+    ]
+    return matrix_from_entries(field, tables, len(entries), length, den)

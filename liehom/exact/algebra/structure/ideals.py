@@ -19,6 +19,7 @@ from liehom.exact.algebra.structure.centroid import (
     centroid_of,
     combinations,
     evaluate,
+    is_central,
     minimal_polynomial,
     semisimple_rank,
 )
@@ -80,6 +81,8 @@ def _restricted(algebra: LieAlgebra, indices: list[int]) -> LieAlgebra:
 
 def _indecomposable(algebra: LieAlgebra) -> list[ExactMatrix]:
     """Bases, as rows, of indecomposable ideals whose direct sum is the algebra."""
+    if is_central(algebra):
+        return [as_exact(algebra.field.identity(algebra.dimension))]
     seeds = BracketSeeds(algebra)
     if seeds.is_perfect():
         return _split(seeds, None)
@@ -401,6 +404,10 @@ def _height(f: Polynomial) -> float:
 
 def simple_ideals(algebra: LieAlgebra) -> list[Subalgebra]:
     """Implements `LieAlgebra.simple_ideals`."""
-    ideals = direct_sum_decomposition(algebra)
-    simple = (ideal for ideal in ideals if ideal.dimension > 2 and ideal.as_algebra().is_semisimple())
-    return [part for ideal in simple for part in real_ideals(ideal)]
+    large = [ideal for ideal in direct_sum_decomposition(algebra) if ideal.dimension > 2]
+    if not large:
+        return []
+    killing = as_exact(algebra.killing_form())  # the Killing form of an ideal is its restriction
+    bases = (as_exact(ideal.basis) for ideal in large)
+    semisimple = [(basis @ killing @ basis.T).rank() == basis.nrows for basis in bases]
+    return [part for ideal, simple in zip(large, semisimple, strict=True) if simple for part in real_ideals(ideal)]

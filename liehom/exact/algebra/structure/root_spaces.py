@@ -12,7 +12,9 @@ import numpy as np
 from liehom.base.errors import InputError, InternalError
 from liehom.base.typing import Array, IntegerArray
 from liehom.exact.algebra.core.lie_algebra import LieAlgebra
-from liehom.exact.algebra.core.subalgebra import Subalgebra
+from liehom.exact.algebra.core.structure_constants import EXACT_FLOATS, exact_floats
+from liehom.exact.algebra.core.subalgebra import Subalgebra, independent_rows
+from liehom.exact.algebra.roots.diagrams import simple_system
 from liehom.exact.algebra.roots.root_system import CartanMatrix, RootSystem
 from liehom.exact.algebra.structure.centroid import evaluate, exact_field
 from liehom.exact.scalars.exact_field import ExactMatrix, as_exact
@@ -55,7 +57,7 @@ def is_self_normalizing(subalgebra: Subalgebra) -> bool:
     algebra, basis = subalgebra.algebra, as_exact(subalgebra.basis)
     if 0 < basis.nrows < algebra.dimension:
         rng = random.Random(basis.nrows)
-        x = algebra.field.matrix([[rng.randint(-9, 9) for _ in range(basis.nrows)]]) @ basis
+        x = algebra.field.matrix([[rng.randint(-WEIGHT, WEIGHT) for _ in range(basis.nrows)]]) @ basis
         coordinates = echelon_quotient(basis)
         action = coordinates.lift @ algebra.ad(x).T @ coordinates.projection
         if int(action.modulo().rank()) == action.nrows:
@@ -65,12 +67,13 @@ def is_self_normalizing(subalgebra: Subalgebra) -> bool:
 
 def _is_abelian(algebra: LieAlgebra, rows: ExactMatrix) -> bool:
     """Whether all rows commute; two random combinations are tried first."""
+    one = algebra.field.identity(algebra.dimension)
     if rows.nrows > 2:
         weights = [[i + 1 for i in range(rows.nrows)], [(i + 1) ** 2 % 17 - 8 for i in range(rows.nrows)]]
         pair = rows.field.matrix(weights) @ rows
-        if not (pair.select(rows=[0]) @ algebra.ad(pair.select(rows=[1])).T).is_zero():
+        if algebra.table.first_nonzero(pair.select(rows=[0]), pair.select(rows=[1]), one) is not None:
             return False
-    return algebra.table.first_nonzero(rows, rows, algebra.field.identity(algebra.dimension)) is None
+    return algebra.table.first_nonzero(rows, rows, one) is None
 
 
 def _smaller(
@@ -87,17 +90,30 @@ def _smaller(
         if key in tried:
             continue
         tried.add(key)
+        if _is_clearly_nilpotent(algebra, candidate):
+            continue
         action = algebra.ad(candidate).T
         if rows.nrows < algebra.dimension:
             action = (rows @ action).select(columns=pivots)
-        step, power = action.modulo(), 1
-        # The ranks of the powers are constant from the number of rows on.
-        while power < rows.nrows:
-            step, power = step * step, 2 * power
+        step, before = action.modulo(), rows.nrows
         rank = int(step.rank())
+        while 0 < rank < before:  # ranks of powers decrease until they are constant
+            step, before = step * step, rank
+            rank = int(step.rank())
         if rank:
             return (_null_component(action, rows.nrows - rank) @ rows).echelon()
     return None
+
+
+def _is_clearly_nilpotent(algebra: LieAlgebra, x: ExactMatrix) -> bool:
+    """Whether (ad x)^4 = 0 in float64, where its numerators are exact, as for a root vector; x is a row (1, n)."""
+    values, weights = algebra.table.floats(), None if x.field.degree > 1 else exact_floats(x)
+    if values is None or weights is None:
+        return False
+    action = algebra.table.adjoint_floats(weights[0], values)
+    square = action @ action
+    small = np.abs(action).sum(axis=1).max() ** 4 < EXACT_FLOATS
+    return bool(small and not (square @ square).any())
 
 
 def _null_component(action: ExactMatrix, expected: int) -> ExactMatrix:
@@ -115,6 +131,29 @@ def _candidates(rows: ExactMatrix) -> Iterator[ExactMatrix]:
     """The rows, then their pairwise sums."""
     yield from (rows.select(rows=[i]) for i in range(rows.nrows))
     yield from (rows.select(rows=[i]) + rows.select(rows=[j]) for i in range(rows.nrows) for j in range(i))
+
+
+# Bases of weight vectors, such as a Chevalley basis: the weights are on the diagonals of the matrices ad h.
+
+
+def diagonal_weights(algebra: LieAlgebra, torus: ExactMatrix) -> list[tuple[Scalar, ...]] | None:
+    """The weights of the basis elements, if all rows of the torus act diagonally in the basis of the algebra."""
+    n, weights = algebra.dimension, []
+    for i in range(torus.nrows):
+        action = algebra.ad(torus.select(rows=[i]))
+        if any(x for part in action.parts for place, x in enumerate(part.entries()) if place % (n + 1)):
+            return None
+        weights.append([action[j, j] for j in range(n)])
+    return list(zip(*weights, strict=True))
+
+
+def simple_roots(values: ExactMatrix) -> list[int]:
+    """The indices of the simple ones among the roots with these values (m, r), in the order of the rows."""
+    base = values.select(rows=independent_rows(values))
+    coordinates = values @ base.inverse()  # rational: fractions with one denominator
+    roots = [tuple(int(coordinates.parts[0][i, j]) for j in range(values.ncols)) for i in range(values.nrows)]
+    index = {root: i for i, root in enumerate(roots)}
+    return sorted(index[root] for root in simple_system(roots, lambda a: a[::-1]))
 
 
 # The root space decomposition g = h + sum of V_alpha over the field of the algebra.

@@ -260,6 +260,26 @@ def test_h2_of_a_large_semisimple_algebra_needs_no_matrix() -> None:
         cohomology(lh.so(12), 3)
 
 
+def test_blocks_reach_degrees_whose_differential_is_large() -> None:
+    """Of filiform algebras the extensions by a line, dim H^2 = floor((n + 1) / 2), and H^3 of so(7) is that of S^3."""
+    for n in (5, 12, 21):
+        assert cohomology(lh.algebra.filiform(n), 2).dimension == (n + 1) // 2
+    assert cohomology(lh.so(7), 3).dimension == 1
+    g = lh.algebra.strictly_upper_triangular(7)
+    h2 = cohomology(g, 2, lh.adjoint(g).matrices)
+    assert h2.dimension == 61 and h2.is_cocycle(h2.representatives.select(rows=[30]))
+
+
+def test_representatives_of_blocks_are_those_of_one_block() -> None:
+    """In a dense basis one block is left; the dimensions do not depend on the basis."""
+    g = lh.algebra.filiform(5)
+    h = g.change_of_basis([[1, 2, 0, 1, 0], [0, 1, 0, 0, 3], [0, 0, 2, 1, 0], [0, 1, 0, 1, 0], [0, 0, 0, 0, 1]])
+    for k in range(4):
+        assert (
+            cohomology(g, k, lh.adjoint(g).matrices).dimension == cohomology(h, k, lh.adjoint(h).matrices).dimension
+        )
+
+
 def test_invalid_modules_and_degrees_raise_errors() -> None:
     for degree in (-1, 1.5, True, "2"):
         with pytest.raises(InputError, match="degree"):
