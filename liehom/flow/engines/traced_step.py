@@ -277,10 +277,7 @@ def _clock_is_admissible(tape: Tape, clock: Sequence[tuple[int, Any]], h: Values
     size: Any = abs(h)
     total: Any = 0.0
     for k, c in sorted(clock, key=lambda term: term[0]):
-        power = size
-        for _ in range(k - 2):
-            power = power * size
-        total = total + k * abs(c) * power
+        total = total + k * abs(c) * size ** (k - 1)
     return _number(tape, total < MAX_CLOCK_DEVIATION)
 
 
