@@ -22,7 +22,7 @@ from liehom.flow.propagation.integration import integrate
 from liehom.flow.run.solution import Solution
 from liehom.flow.steps.conserving import Conserving
 from liehom.flow.steps.corrected import Corrected
-from liehom.flow.steps.step import Factors, Generator, LocalStep, Step, StepLike, as_step
+from liehom.flow.steps.step import Generator, LocalStep, Step, StepLike, as_step
 
 # The macrospin: one spin in a constant field, with damping, solved in closed form.
 #
@@ -174,9 +174,6 @@ class ThermalStep(Step):
     @property
     def order(self) -> int:
         return self.step.order
-
-    def factors(self, action: Action, psi: Generator, m: Values, t: Values, h: Values) -> Factors:
-        return self.at(action, psi, m, t).factors(h)
 
     def at(self, action: Action, psi: Generator, m: Values, t: Values, *, error_terms: int = 0) -> LocalStep:
         if error_terms:

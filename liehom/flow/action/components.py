@@ -125,9 +125,9 @@ def _read_only(x: Any) -> Any:
     return view
 
 
-def takes_time(function: Callable[..., Any], what: str = "the function") -> bool:
+def takes_time(function: Callable[..., Any]) -> bool:
     """Whether a function is called with (m, t), and not with m alone."""
-    return call_form(function, what).time is not None
+    return call_form(function, "the function").time is not None
 
 
 def checked_form(source: Callable[..., Any], what: str, time_dependent: bool | None) -> tuple[CallForm, bool]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from fractions import Fraction
+from operator import add, mul, sub, truediv
 from typing import Any, Literal, TypeAlias, final
 
 import numpy as np
@@ -78,83 +79,62 @@ Compiled = Callable[[Evaluation], Value]
 """A compiled expression."""
 
 
-@final
-class Constant:
-    """The node of a constant, computed once for each arithmetic."""
+def constant(inner: Compiled) -> Compiled:
+    """The node of a constant, computed once for each arithmetic of floats."""
+    known: dict[str, Value] = {}
 
-    __slots__ = ("_inner", "_known")
-
-    def __init__(self, inner: Compiled) -> None:
-        self._inner = inner
-        self._known: dict[str, Value] = {}
-
-    def __call__(self, at: Evaluation) -> Value:
+    def value(at: Evaluation) -> Value:
         if at.kind == "exact":
-            return self._inner(at)
-        if at.kind not in self._known:
-            self._known[at.kind] = self._inner(at)
-        return self._known[at.kind]
+            return inner(at)
+        if at.kind not in known:
+            known[at.kind] = inner(at)
+        return known[at.kind]
+
+    return value
 
 
-@final
-class Chain:
+OPERATORS: dict[str, Callable[[Any, Any], Any]] = {"+": add, "-": sub, "*": mul, "/": truediv}
+
+
+def chain(first: Compiled, steps: list[tuple[str, Compiled]]) -> Compiled:
     """The node of a + b - c ... or a * b / c ..., evaluated from left to right."""
 
-    __slots__ = ("_first", "_steps")
-
-    def __init__(self, first: Compiled, steps: list[tuple[str, Compiled]]) -> None:
-        self._first, self._steps = first, steps
-
-    def __call__(self, at: Evaluation) -> Value:
-        total = self._first(at)
-        for operator, part in self._steps:
-            right = part(at)
-            if operator == "+":
-                total = total + right
-            elif operator == "-":
-                total = total - right
-            elif operator == "*":
-                total = total * right
-            else:
-                try:
-                    total = total / right
-                except ZeroDivisionError:
-                    raise ParseError("division by zero in a value") from None
+    def value(at: Evaluation) -> Value:
+        total = first(at)
+        try:
+            for operator, part in steps:
+                total = OPERATORS[operator](total, part(at))
+        except ZeroDivisionError:
+            raise ParseError("division by zero in a value") from None
         return total
 
+    return value
 
-@final
-class Power:
+
+def power(base: Compiled, exponent: int) -> Compiled:
     """The node of a power with a constant integer exponent."""
 
-    __slots__ = ("_base", "_exponent")
-
-    def __init__(self, base: Compiled, exponent: int) -> None:
-        self._base, self._exponent = base, exponent
-
-    def __call__(self, at: Evaluation) -> Value:
+    def value(at: Evaluation) -> Value:
         try:
-            return self._base(at) ** self._exponent
+            return base(at) ** exponent
         except ZeroDivisionError:
             raise ParseError("a negative power of zero in a value") from None
 
+    return value
 
-@final
-class Function:
+
+def applied(name: str, argument: Compiled) -> Compiled:
     """The node of a function of one argument, given by its numpy name."""
 
-    __slots__ = ("_argument", "_name")
-
-    def __init__(self, name: str, argument: Compiled) -> None:
-        self._name, self._argument = name, argument
-
-    def __call__(self, at: Evaluation) -> Value:
-        x = self._argument(at)
+    def value(at: Evaluation) -> Value:
+        x = argument(at)
         if isinstance(x, Jet):
-            return getattr(np, self._name)(x)
-        if self._name == "sqrt" and at.kind == "exact":
+            return getattr(np, name)(x)
+        if name == "sqrt" and at.kind == "exact":
             return np.vectorize(_exact_root, otypes=[object])(x) if np.ndim(x) else _exact_root(np.asarray(x).item())
-        return elementary(self._name, x)
+        return elementary(name, x)
+
+    return value
 
 
 def _exact_root(x: Value) -> Value:
@@ -226,7 +206,7 @@ def _of_tree(tree: Node) -> Compiled:
     if isinstance(tree, Number):
         number = Fraction(int(tree.value))
         return lambda s: s.rational(number)
-    return _combined(tree) if _names(tree) - {"pi"} else Constant(_combined(tree))
+    return _combined(tree) if _names(tree) - {"pi"} else constant(_combined(tree))
 
 
 def _combined(tree: Node) -> Compiled:
@@ -235,7 +215,7 @@ def _combined(tree: Node) -> Compiled:
         steps.append((tree.operator, _of_tree(tree.operands[1])))  # chains may be longer than the stack
         tree = tree.operands[0]
     if steps:
-        return Chain(_of_tree(tree), steps[::-1])
+        return chain(_of_tree(tree), steps[::-1])
     match tree:
         case Name("t"):
             return lambda s: s.t
@@ -245,11 +225,11 @@ def _combined(tree: Node) -> Compiled:
             index = int(name[1:])
             return lambda s: s.coordinate(index)
         case Call(function, argument):
-            return Function(_NUMPY.get(function, function), _of_tree(argument))
+            return applied(_NUMPY.get(function, function), _of_tree(argument))
         case Operation("**", (base, Operation("neg", (Number(value),)))):
-            return Power(_of_tree(base), -int(value))
+            return power(_of_tree(base), -int(value))
         case Operation("**", (base, Number(value))):
-            return Power(_of_tree(base), int(value))
+            return power(_of_tree(base), int(value))
         case Operation("neg", (operand,)):
             inner = _of_tree(operand)
             return lambda s: -inner(s)
@@ -287,7 +267,7 @@ def _translated(part: Expression) -> Compiled | None:
         near, digits = float(part), str(part.evalf(30))
         return lambda s: s.irrational(near, digits)
     operation = _operation(part)
-    return Constant(operation) if operation is not None and not part.free_symbols else operation
+    return constant(operation) if operation is not None and not part.free_symbols else operation
 
 
 def _operation(part: Expression) -> Compiled | None:
@@ -299,12 +279,12 @@ def _operation(part: Expression) -> Compiled | None:
         operands = [_translated(a) for a in [*(above or [sympy.S.One]), *below]]
         known = [f for f in operands if f is not None]
         operators = ["+" if part.is_Add else "*"] * (len(above) - 1 if above else 0) + ["/"] * len(below)
-        return Chain(known[0], list(zip(operators, known[1:], strict=True))) if len(known) == len(operands) else None
+        return chain(known[0], list(zip(operators, known[1:], strict=True))) if len(known) == len(operands) else None
     if part.is_Pow:
         return _sympy_power(*part.args)
     name = part.func.__name__
     inner = _translated(part.args[0]) if name in FUNCTIONS and len(part.args) == 1 else None
-    return None if inner is None else Function(_NUMPY.get(name, name), inner)
+    return None if inner is None else applied(_NUMPY.get(name, name), inner)
 
 
 def _is_divisor(part: Expression) -> bool:
@@ -316,10 +296,10 @@ def _sympy_power(base: Expression, exponent: Expression) -> Compiled | None:
     if inner is None:
         return None
     if exponent.is_Integer:
-        return Power(inner, int(exponent))
+        return power(inner, int(exponent))
     if exponent.is_Rational and exponent.q == 2:
-        root = Function("sqrt", inner)
-        return root if exponent.p == 1 else Power(root, int(exponent.p))
+        root = applied("sqrt", inner)
+        return root if exponent.p == 1 else power(root, int(exponent.p))
     above = _translated(exponent)
     return None if above is None else lambda s: inner(s) ** above(s)
 

@@ -1,4 +1,4 @@
-"""Orbits in closed form: products of quadrics, orbits with equal singular values."""
+"""Orbits in closed form: products of quadrics, and orbits with equal singular values, their inverses and frames."""
 
 from __future__ import annotations
 
@@ -7,7 +7,8 @@ from typing import Any, NamedTuple, cast, final
 
 import numpy as np
 
-from liehom.base.typing import Array, IntegerArray, Values
+from liehom.base.typing import Array, BooleanArray, IntegerArray, Values
+from liehom.flow.action.frames import TightFrame
 from liehom.flow.action.invariants import (
     DENOMINATOR,
     FORM_RTOL,
@@ -199,7 +200,7 @@ def _are_smooth(blocks: tuple[Block, ...], points: Array) -> bool:
 TIGHT_RTOL = 1e-11
 """Largest defect of the condition, relative to lambda and the largest entry of A."""
 SAMPLES = 16
-"""Number of points that are moved along their orbits, if the inner product on g is not invariant."""
+"""Number of points at least that are moved along their orbits; fewer initial points are used several times."""
 
 
 class TightInverse(NamedTuple):
@@ -259,3 +260,89 @@ def _holds(action: Action, inverse: TightInverse, points: Array) -> bool:
     return bool(
         ((scale > least) & (defect <= TIGHT_RTOL * scale * np.abs(columns).max(axis=(1, 2), initial=0.0))).all()
     )
+
+
+# The tight frames of orbits on which all singular values agree.
+
+POINTS_AT_ONCE = 4096
+"""Points whose matrices are in memory at once."""
+OWN_STREAM = 20011
+"""Second word of the seed: points that a caller drew with the same seed must not be the random tangent vectors too."""
+
+
+def tight_frame(action: Action, points: Array, rank: int, seed: int = 0) -> TightFrame | None:
+    """The tight frame of the orbits of points, all of one dimension, or None if their singular values differ.
+
+    Both conditions, on the singular values of A and on the action of the isotropy on tangent vectors, are identities
+    between polynomials. An orbit of a connected group is irreducible, so such an identity holds on all of it if it
+    holds at a random point of it. It says nothing about another orbit. Therefore the conditions are checked, to
+    round-off, on the orbit of each of the points, and `isotropy` must be one number for all of them. Where the group
+    acts by orthogonal matrices on V and on g, both conditions hold on a whole orbit if they hold at one point of it,
+    and the points themselves are used. Otherwise they are moved by random elements of the group.
+    """
+    if rank < 2 or not len(points):
+        return None
+    points = points / np.abs(points).max(axis=-1, keepdims=True)  # the conditions are of degree 3 in them
+    rng = np.random.default_rng((seed, OWN_STREAM))
+    basis = action.inner_product.orthonormal_basis()
+    rows = np.arange(max(len(points), SAMPLES)) % len(points)
+    mu, symmetric, orthogonal = None, True, _acts_orthogonally(action)
+    for first in range(0, len(rows), POINTS_AT_ONCE):
+        some = points[rows[first : first + POINTS_AT_ONCE]]
+        if not bool(is_tight(action.infinitesimal.right(some) @ basis, rank).all()):
+            return None
+        if not orthogonal:
+            x = rng.normal(size=(len(some), action.dimension))
+            some = np.asarray(action.act(x / max(1.0, float(action.max_norm)), some))
+            if not bool(is_tight(action.infinitesimal.right(some) @ basis, rank).all()):
+                return None
+        constant = _isotropy_constant(action, some, rank, rng, mu)
+        if constant is None:
+            return None
+        mu, symmetric = constant[0], symmetric and constant[1]
+    if mu is None:
+        return None
+    inverse: Any = np.linalg.inv(action.inner_product.matrix)
+    corners = action.infinitesimal.right(np.eye(points.shape[-1]))
+    trace = np.einsum("pia,ab,qib->pq", corners, inverse, corners)
+    near = float(Fraction(mu).limit_denominator(256))
+    return TightFrame(trace, near if abs(near - mu) <= 1e-12 * mu else mu, inverse, symmetric)
+
+
+def _acts_orthogonally(action: Action) -> bool:
+    """Whether the matrices rho(e_i) are skew-symmetric and the inner product on g is Ad-invariant."""
+    matrices = action.infinitesimal.right(np.eye(action.infinitesimal.shape[1]))  # [j, :, i]: rho(e_i) e_j
+    defect = np.abs(matrices + np.swapaxes(matrices, 0, 1)).max(initial=0.0)
+    return action.inner_product.invariant and bool(defect <= TIGHT_RTOL * np.abs(matrices).max(initial=0.0))
+
+
+def _isotropy_constant(
+    action: Action, points: Array, rank: int, rng: np.random.Generator, before: float | None
+) -> tuple[float, bool] | None:
+    """`isotropy` and `symmetric` of a `TightFrame` at points; None unless `isotropy` is one number (`before`)."""
+    basis = action.inner_product.orthonormal_basis()
+    columns = action.infinitesimal.right(points) @ basis
+    square = np.sum(columns * columns, axis=(-2, -1))[:, None, None] / rank
+    tangent = columns @ np.swapaxes(columns, -1, -2) / square
+    kernel = np.eye(columns.shape[-1]) - np.swapaxes(columns, -1, -2) @ columns / square
+    u = (tangent @ rng.normal(size=(*points.shape, 1)))[..., 0]
+    u = u / np.sqrt(np.sum(u * u, axis=-1, keepdims=True))
+    across = action.infinitesimal.right(u) @ basis @ kernel
+    squares = across @ np.swapaxes(across, -1, -2)
+    normal = tangent - u[:, :, None] * u[:, None, :]
+    mu = float(np.trace(squares[0]) / (rank - 1)) if before is None else before
+    if not (mu > TIGHT_RTOL and float(np.abs(squares - mu * normal).max()) <= TIGHT_RTOL * max(mu, 1.0)):
+        return None
+    r = (tangent @ rng.normal(size=(*points.shape, 1)))[..., 0]
+    turned = np.swapaxes(action.infinitesimal.right(u) @ basis, -1, -2) @ r[..., None]
+    outside = np.abs(turned - kernel @ turned).max()
+    return mu, bool(outside <= TIGHT_RTOL * max(1.0, float(np.abs(turned).max())))
+
+
+def is_tight(matrix: Values, rank: int) -> BooleanArray:
+    """Mask, shape (...,), of the matrices with A A^T A = lambda A, lambda = tr(A A^T) / rank."""
+    a = np.ascontiguousarray(np.moveaxis(np.asarray(matrix), (-2, -1), (0, 1)))  # sums over all matrices at once
+    square = np.einsum("pq...,pq...->...", a, a) / rank
+    left = np.einsum("pr...,qr...->pq...", a, a)
+    defect = np.einsum("pr...,rq...->pq...", left, a) - square * a
+    return np.abs(defect).max(axis=(0, 1)) <= TIGHT_RTOL * (square * np.abs(a).max(axis=(0, 1)))

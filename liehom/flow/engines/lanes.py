@@ -82,15 +82,16 @@ def with_guard(graph: StepGraph, action: Action, dimension: int) -> StepGraph:
     return replace(graph, guard=guard, constant_functions=tuple(tape.constant_functions))
 
 
-def _has_rank(action: Action, m: Values, size: Values, dimension: int) -> tuple[Values, Values]:
+def _has_rank(action: Action, m: Traced, size: Values, dimension: int) -> tuple[Values, Values]:
     """Whether the orbit of a point m with m.m = size is certainly of at least, and at most, dimension d. A map of a
     random R^d to g, followed by the action on the point, is injective; if orbits of larger dimension exist, those of
     several R^(d + 1) are not.
     """
-    rng, tape = np.random.default_rng((0, dimension)), m.tape  # type: ignore[union-attr]
+    rng, tape = np.random.default_rng((0, dimension)), m.tape
     generic = check_point(action.representation, rng.normal(size=(4, m.shape[-1])))
     low = dimension < int(generic.max())
-    frame: Any = action.infinitesimal.right(m)
+    point: Any = m
+    frame: Any = action.infinitesimal.right(point)
     certain: Any = Traced(tape, tape.false)
     bounded: Any = Traced(tape, tape.true)
     for _ in range(GUARD_PROJECTIONS):

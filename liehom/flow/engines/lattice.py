@@ -75,9 +75,6 @@ class LatticeStep(Step):
     def order(self) -> int:
         return self.step.order
 
-    def factors(self, action: Action, psi: Generator, m: Values, t: Values, h: Values) -> tuple[Values, ...]:
-        return self.step.factors(action, psi, m, t, h)
-
     def at(self, action: Action, psi: Generator, m: Values, t: Values, *, error_terms: int = 0) -> LocalStep:
         if isinstance(m, Jet) or not isinstance(m, np.ndarray) or m.dtype != np.float64:
             return self.step.at(action, psi, m, t, error_terms=error_terms)

@@ -101,7 +101,12 @@ class Sensitivity:
     def args(self) -> Pytree:
         """Derivatives of the points by args, a pytree with arrays (..., N, *shape of the leaf, number of times)."""
         tangents = self._tangents[..., self._size :, :]
-        return self._leaves(lambda columns: tangents[..., columns, :])
+
+        def of_leaf(_: Leaf, shape: tuple[int, ...], part: slice) -> Array:
+            columns = tangents[..., part, :]
+            return columns.reshape(*columns.shape[:-2], *shape, columns.shape[-1])
+
+        return self._by_leaf(of_leaf)
 
     def vjp(self, weights: npt.ArrayLike) -> Gradient:
         """The derivatives of sum(weights * solution.y), by one backward pass: a `Gradient`.
@@ -115,10 +120,8 @@ class Sensitivity:
             raise ShapeError(f"weights of shape {w.shape}, expected that of solution.y, {np.shape(self.solution.y)}")
         flat = np.moveaxis(w, -1, 0).reshape(w.shape[-1], -1, self._size)
         parts = [group.adjoint(flat[:, group.lanes]) for group in self._groups]
-        y0, by_parameter = (
-            np.zeros((flat.shape[1], self._size)),
-            np.zeros((len(parts[0][1]) if parts else 0, flat.shape[1])),
-        )
+        y0 = np.zeros((flat.shape[1], self._size))
+        by_parameter = np.zeros((len(parts[0][1]) if parts else 0, flat.shape[1]))
         for group, part in zip(self._groups, parts, strict=True):
             y0[group.lanes], by_parameter[:, group.lanes] = part
         return Gradient(y0.reshape(*self._shape, self._size), self._gradient(by_parameter))
@@ -135,34 +138,28 @@ class Sensitivity:
         tangents = np.moveaxis(tangents, 0, -1).reshape(*self._shape, size, columns, times)
         return np.where(np.isfinite(np.asarray(self.solution.y))[..., None, :], tangents, np.nan)
 
-    def _leaves(self, taken: Callable[[slice], Array]) -> Pytree:
-        """args with arrays (..., N, *shape, k) in place of its leaves, of the columns of their numbers."""
+    def _by_leaf(self, made: Callable[[Leaf, tuple[int, ...], slice], Array]) -> Pytree:
+        """args with made(leaf, shape for one trajectory, places of its numbers) in place of its leaves."""
         first = 0
 
-        def of_leaf(leaf: Leaf) -> object:
+        def of_leaf(leaf: Leaf) -> Array:
             nonlocal first
             shape = self._slice(leaf)
-            count = int(np.prod(shape, dtype=int))
-            columns = taken(slice(first, first + count))
-            first += count
-            return columns.reshape(*columns.shape[:-2], *shape, columns.shape[-1])
+            part = slice(first, first + int(np.prod(shape, dtype=int)))
+            first = part.stop
+            return made(leaf, shape, part)
 
         return mapped(self._problem.args, of_leaf)
 
     def _gradient(self, by_parameter: Array) -> Pytree:
         """args with the derivatives of a number, from those by each number of each trajectory, (P, L)."""
-        first = 0
 
-        def of_leaf(leaf: Leaf) -> object:
-            nonlocal first
-            shape = self._slice(leaf)
-            rows = by_parameter[first : first + int(np.prod(shape, dtype=int))]
-            first += len(rows)
+        def of_leaf(leaf: Leaf, shape: tuple[int, ...], part: slice) -> Array:
             if isinstance(leaf.value, PerTrajectory):
-                return np.moveaxis(rows, 0, -1).reshape(*self._shape, *shape)
-            return rows.sum(axis=1).reshape(shape)
+                return np.moveaxis(by_parameter[part], 0, -1).reshape(*self._shape, *shape)
+            return by_parameter[part].sum(axis=1).reshape(shape)
 
-        return mapped(self._problem.args, of_leaf)
+        return self._by_leaf(of_leaf)
 
     def _slice(self, leaf: Leaf) -> tuple[int, ...]:
         """The shape of a leaf, or of its slice for one trajectory."""

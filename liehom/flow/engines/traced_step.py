@@ -12,7 +12,7 @@ from liehom.base.errors import LiehomError, TraceError
 from liehom.base.pytrees import Leaf, PerTrajectory, leaves, mapped
 from liehom.base.typing import Array, IntegerArray, Pytree, Real, Values
 from liehom.flow.action.field import GeneratorField
-from liehom.flow.action.frames import tight_frame
+from liehom.flow.action.quadrics import tight_frame
 from liehom.flow.action.space import Action
 from liehom.flow.run.check import Seen, is_unbounded
 from liehom.flow.run.control import (
@@ -289,10 +289,7 @@ def _clock_is_admissible(tape: Tape, clock: Sequence[tuple[int, Any]], h: Values
     size: Any = abs(h)
     total: Any = 0.0
     for k, c in sorted(clock, key=lambda term: term[0]):
-        power = size
-        for _ in range(k - 2):
-            power = power * size
-        total = total + k * abs(c) * power
+        total = total + k * abs(c) * size ** (k - 1)
     return _number(tape, total < MAX_CLOCK_DEVIATION)
 
 

@@ -516,42 +516,25 @@ def _broadcast_arrays(*args: Operand, subok: bool = False) -> tuple[Any, ...]:
 
 
 EXTRA_METHODS: dict[str, Callable[..., Any]] = {
-    "astype": _astype,
-    "flatten": lambda jet: jet.reshape(-1).copy(),
-    "tolist": _listed,
-}
+    "astype": _astype, "flatten": lambda jet: jet.reshape(-1).copy(), "tolist": _listed,
+}  # fmt: skip
 SPECIAL: dict[str, Callable[..., Any]] = {
-    "einsum": _einsum,
-    "block": _block,
-    "append": _append,
-    "prod": _prod,
-    "polyval": _polyval,
-    "where": _where,
-    "broadcast_arrays": _broadcast_arrays,
-    "linalg.norm": _norm,
+    "einsum": _einsum, "block": _block, "append": _append, "prod": _prod, "polyval": _polyval, "where": _where,
+    "broadcast_arrays": _broadcast_arrays, "linalg.norm": _norm, "linalg.solve": _solve, "linalg.inv": _inverse,
+    "linalg.det": _determinant, "linalg.matrix_power": _matrix_power,
     "linalg.vector_norm": lambda x, axis=None, keepdims=False: _norm(
         x if axis is not None else x.reshape(-1), None, axis, keepdims
     ),
-    "linalg.solve": _solve,
-    "linalg.inv": _inverse,
-    "linalg.det": _determinant,
-    "linalg.matrix_power": _matrix_power,
     "linalg.trace": lambda x, offset=0: np.trace(x, offset, -2, -1),
     "linalg.diagonal": lambda x, offset=0: np.diagonal(x, offset, -2, -1),
     "linalg.matrix_transpose": lambda x: np.swapaxes(x, -1, -2),
     "linalg.multi_dot": lambda arrays: reduce(np.dot, arrays),
-    "zeros_like": _blank(0),
-    "empty_like": _blank(0),
-    "ones_like": _blank(1),
-    "full_like": _full_like,
-    "copy": lambda a, order="K", subok=False: a.copy(),
-    "shape": lambda a: a.shape,
-    "ndim": lambda a: a.ndim,
+    "zeros_like": _blank(0), "empty_like": _blank(0), "ones_like": _blank(1), "full_like": _full_like,
+    "copy": lambda a, order="K", subok=False: a.copy(), "shape": lambda a: a.shape, "ndim": lambda a: a.ndim,
     "size": lambda a, axis=None: a.size if axis is None else a.shape[axis],
-    "iscomplexobj": lambda x: x.dtype.kind == "c",
-    "isrealobj": lambda x: x.dtype.kind != "c",
+    "iscomplexobj": lambda x: x.dtype.kind == "c", "isrealobj": lambda x: x.dtype.kind != "c",
     "result_type": lambda *args: np.result_type(*[a.dtype if isinstance(a, Jet) else a for a in args]),
-}
+}  # fmt: skip
 
 dispatch.apply_function = apply_function
 dispatch.method = method

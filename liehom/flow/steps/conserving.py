@@ -109,7 +109,7 @@ def _of_one(
 ) -> LevelSolution:
     """`solve_levels` for one integral and one direction, by the secant method; on tracers in each lane separately."""
     resolved = np.abs(slope) > MIN_RESOLVED_UNITS * size * unit
-    active = resolved & (np.abs(first) > unit)
+    active: Any = resolved & (np.abs(first) > unit)
     if not isinstance(active, Traced) and not active.any():
         return LevelSolution(None, first[..., None], np.zeros(active.shape, dtype=int), resolved.astype(int))
 

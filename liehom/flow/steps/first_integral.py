@@ -404,10 +404,10 @@ class Conservation:
         directions = self.directions
         units = np.where(self.scale > 0, self.scale, 1.0)
         matrix = self.along(self._velocity, directions) / units[..., None]
-        if type(matrix) is Traced:  # one integral
-            inverse = np.where(matrix == 0, 0.0, 1.0 / np.where(matrix == 0, 1.0, matrix))
+        if matrix.shape[-2:] == (1, 1):
+            inverse: Values = np.where(matrix == 0, 0.0, 1.0 / np.where(matrix == 0, 1.0, matrix))
         else:
-            inverse = pseudo_inverse(matrix, 0.0)
+            inverse = np.linalg.pinv(_double(matrix), rcond=1e-12)
         return (directions @ (inverse @ (target / units)[..., None]))[..., 0]
 
     def range(self, index: tuple[int, ...] = ()) -> Array:
@@ -459,17 +459,6 @@ def combination(covector: Sequence[float] | Array) -> str:
             size = f"{abs(x):.6g}"
             text += f"{sign}{'' if size == '1' else size + ' '}F[{i}]"
     return text
-
-
-def pseudo_inverse(matrix: Values, cutoff: float | Array) -> Array:
-    """Pseudo-inverse of matrices (..., k, q); singular values up to `cutoff` or 1e-12 of the largest count as 0."""
-    if matrix.shape[-2:] == (1, 1):
-        kept = np.abs(matrix) > np.asarray(cutoff)[..., None, None]
-        return np.where(kept, 1 / np.where(kept, matrix, 1.0), 0.0)
-    left, sizes, right = np.linalg.svd(_double(matrix), full_matrices=False)
-    kept = sizes > np.maximum(np.asarray(cutoff)[..., None], 1e-12 * sizes[..., :1])
-    inverse = np.where(kept, 1 / np.where(kept, sizes, 1.0), 0.0)
-    return np.swapaxes(right, -1, -2) @ (inverse[..., None] * np.swapaxes(left, -1, -2))
 
 
 def conservation_map(

@@ -372,11 +372,11 @@ def _single(x: Values) -> Values:
     return x.astype(np.float64) if x.dtype == np.longdouble else x
 
 
-def _pseudo_inverse(xp: ModuleType, matrix: Values, cutoff: float, rank: int | None = None) -> Values:
+def _pseudo_inverse(xp: ModuleType, matrix: Values, cutoff: float) -> Values:
     """M^+ (..., s, d); in extended precision ((M M^T)^+)^2 in double precision, from which M^+ is iterated."""
     turned, extended = xp.swapaxes(matrix, -1, -2), matrix.dtype == np.longdouble
     if type(matrix) is Traced:
-        parts = orthogonal_decomposition(matrix, min(matrix.shape[-2:]) if rank is None else rank, cutoff)
+        parts = orthogonal_decomposition(matrix, min(matrix.shape[-2:]), cutoff)
         return parts.lift @ xp.swapaxes(parts.image, -1, -2)
     if matrix.shape[-1] == 0:
         return matrix @ turned if extended else turned

@@ -462,13 +462,13 @@ StepLike: TypeAlias = Step | str
 """A step, or its name, such as "rk45"."""
 
 
-def as_step(step: StepLike, what: str = "step") -> Step:
+def as_step(step: StepLike) -> Step:
     """A step by its name, or the step itself."""
     if isinstance(step, Step):
         return step
     if not isinstance(step, str):
         raise InputError(
-            f"{what} is {displayed(step)}, expected a step such as liehom.Euler() or liehom.LieTaylor(4), or its name"
+            f"step is {displayed(step)}, expected a step such as liehom.Euler() or liehom.LieTaylor(4), or its name"
         )
     return cast(Step, provider("step by name")(step))
 

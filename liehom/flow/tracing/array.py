@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from functools import reduce
+from functools import partial, reduce
 from typing import TYPE_CHECKING, Any, TypeAlias, final
 
 import numpy as np
@@ -50,36 +50,32 @@ def _known_extremum(tape: Tape, a: Expr, b: Expr, *, least: bool = False) -> Exp
     return tape.select(tape.compare("ne", b, b), a, larger)
 
 
+def _exclusive(tape: Tape, a: Expr, b: Expr) -> Expr:
+    return tape.select(a, tape.negated(b), tape.truth(b))
+
+
 LOGICAL: dict[str, Callable[..., Expr]] = {
-    "logical_and": lambda tape, a, b: tape.both(a, b),
-    "bitwise_and": lambda tape, a, b: tape.both(a, b),
-    "logical_or": lambda tape, a, b: tape.either(a, b),
-    "bitwise_or": lambda tape, a, b: tape.either(a, b),
-    "logical_xor": lambda tape, a, b: tape.select(a, tape.negated(b), tape.truth(b)),
-    "bitwise_xor": lambda tape, a, b: tape.select(a, tape.negated(b), tape.truth(b)),
-    "logical_not": lambda tape, a: tape.negated(a),
-    "invert": lambda tape, a: tape.negated(a),
-}
+    "logical_and": Tape.both, "bitwise_and": Tape.both, "logical_or": Tape.either, "bitwise_or": Tape.either,
+    "logical_xor": _exclusive, "bitwise_xor": _exclusive, "logical_not": Tape.negated, "invert": Tape.negated,
+}  # fmt: skip
 ELEMENTS: dict[str, Callable[..., Expr]] = {
     "absolute": lambda tape, x: tape.call("abs", x),
     "fabs": lambda tape, x: tape.call("abs", x),
-    "maximum": lambda tape, a, b: tape.largest(a, b),
-    "minimum": lambda tape, a, b: tape.largest(a, b, least=True),
-    "fmax": lambda tape, a, b: _known_extremum(tape, a, b),
-    "fmin": lambda tape, a, b: _known_extremum(tape, a, b, least=True),
+    "maximum": Tape.largest,
+    "minimum": partial(Tape.largest, least=True),
+    "fmax": _known_extremum,
+    "fmin": partial(_known_extremum, least=True),
     "greater": lambda tape, a, b: tape.compare("lt", b, a),
     "greater_equal": lambda tape, a, b: tape.compare("le", b, a),
     "isfinite": lambda tape, a: tape.compare("lt", tape.call("abs", a), tape.constant(np.inf)),
     "isinf": lambda tape, a: tape.compare("eq", tape.call("abs", a), tape.constant(np.inf)),
     "isnan": lambda tape, a: tape.compare("ne", a, a),
-    "power": lambda tape, a, b: tape.power(a, b),
-    "float_power": lambda tape, a, b: tape.power(a, b),
+    "power": Tape.power,
+    "float_power": Tape.power,
     "hypot": lambda tape, a, b: tape.call("sqrt", a * a + b * b),
     "sign": _sign,
-    "deg2rad": lambda tape, a: tape.mul(a, tape.constant(np.pi / 180)),
-    "radians": lambda tape, a: tape.mul(a, tape.constant(np.pi / 180)),
-    "rad2deg": lambda tape, a: tape.mul(a, tape.constant(180 / np.pi)),
-    "degrees": lambda tape, a: tape.mul(a, tape.constant(180 / np.pi)),
+    **dict.fromkeys(["deg2rad", "radians"], lambda tape, a: a * (np.pi / 180)),
+    **dict.fromkeys(["rad2deg", "degrees"], lambda tape, a: a * (180 / np.pi)),
 }
 
 
