@@ -1,6 +1,6 @@
 """liehom: Lie algebras and isotropy analysis, exact where the input is exact.
 
-Two halves stand on one base, and meet at one door. Each floor imports only those below it:
+The library has two halves, `exact` and `flow`, above one base. Each package imports only those listed before it:
 
 `base`      errors, types, limits, files that are written whole, tasks on executors.
 `exact`     scalars, Lie algebras, representations, orbits, invariant geometry, full pairs, qubits, names; no engine.

@@ -176,3 +176,15 @@ def test_progress_is_shown_on_a_terminal(tmp_path: Path, capsys: Any, monkeypatc
         animate_trajectory(SOL, tmp_path / "orbit.gif", seconds=0.3, fps=10, ax=small())
         shown.append(capsys.readouterr().err)
     assert not shown[0] and "drawing" in shown[1] and "100%" in shown[1]
+
+
+def test_a_point_stays_where_its_trajectory_ends_early() -> None:
+    def event(t: Any, y: Any) -> Any:
+        return y[..., 0] - 0.5
+
+    event.terminal = True  # type: ignore[attr-defined]
+    made = lh.integrate(SPIN, (0, 2), [[1.0, 0.0], [0.1, 0.0]], events=event)
+    actors = stage(made, ax=small())
+    for actor, end in zip(actors, ([0.5, 0.75**0.5], [0.1 * np.cos(2), 0.1 * np.sin(2)]), strict=True):
+        assert np.isfinite(actor.points).all()
+        assert np.allclose(np.array(actor.move(1.0)[2].get_data(), dtype=float)[:, 0], end, atol=5e-3)

@@ -461,10 +461,11 @@ def test_eight_coordinates_are_curves_and_nine_are_colors() -> None:
     assert (len(nine.lines), len(nine.collections)) == (0, 1)
 
 
-def test_steps_are_made_again_for_short_runs_only(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_steps_are_made_again_for_few_short_runs_only(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(trajectory_plot, "MAX_STEPS_MADE", 6)
-    for end, exact in ((6, True), (7, False)):
-        made = curves_of(lh.integrate(rotation(2), (0, end), [1.0, 0.0], dt=1.0))
+    monkeypatch.setattr(trajectory_plot, "MAX_TRAJECTORIES", 2)
+    for end, count, exact in ((6, 1, True), (7, 1, False), (6, 2, True), (6, 3, False)):
+        made = curves_of(lh.integrate(rotation(2), (0, end), [[1.0, 0.0]] * count, dt=1.0))
         assert bool(np.abs(made.y[0, 0] - np.cos(made.t[0])).max() < 1e-12) is exact
 
 

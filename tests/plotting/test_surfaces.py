@@ -98,3 +98,9 @@ def test_axes_in_space_show_a_box_in_equal_scales() -> None:
 def test_other_level_sets_raise(form: np.ndarray) -> None:
     with pytest.raises(lh.InputError, match="ellipsoid"):
         Quadric(form, 1.0)
+
+
+@pytest.mark.parametrize("kind", CASES)
+def test_surfaces_without_points_are_symmetric(kind: str) -> None:
+    low, high = Quadric(*CASES[kind]).bounds()
+    assert np.allclose(low, -high) and (high > 0.5).all()

@@ -60,6 +60,8 @@ def test_numbers_of_qubits_that_do_not_fit_are_refused() -> None:
         with pytest.raises(InputError):
             read_sums(["XX"], qubits)  # type: ignore[arg-type]
     assert read_sums(["X(1)"], 4).qubits == 4
+    with pytest.raises(InputError, match="act on 6 qubits, not on 3"):
+        read_sums(["X(5)"], 3)
 
 
 @given(st.text("IXYZ0123456789()+-*/@. sqrt", max_size=20))

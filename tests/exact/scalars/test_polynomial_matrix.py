@@ -57,3 +57,11 @@ def test_dependent_null_vectors_are_replaced() -> None:
     assert len(rows) == 2 and not dependent
     rows, dependent = PolynomialMatrix(3, [[x, {}, y, z]], (1, 4)).null_space
     assert len(rows) == 3 and [str(p) for p in dependent] == ["x0"]
+
+
+def test_a_condition_inside_another_one_is_left_out() -> None:
+    """The real zeros of x^2 + y^2 are the axis x = y = 0, on which x is 0 and z is not."""
+    squares, x, z = {(2, 0, 0): 1, (0, 2, 0): 1}, {(1, 0, 0): 1}, {(0, 0, 1): 1}
+    for other, kept in ((x, ["x0"]), (z, ["x2", "x0^2+x1^2"])):
+        conditions, sharp = PolynomialMatrix(3, [[squares, {}], [{}, other]], (2, 2)).rank_conditions()
+        assert sharp and [str(p).replace(" ", "") for p in conditions] == kept

@@ -1,11 +1,14 @@
 """Cuts between real parts: they are found whatever their distance, or there is proved to be none."""
 
+import math
+
 import flint
 import pytest
 
+from liehom.base.errors import FieldError
 from liehom.exact.scalars.number_fields import NumberField
 from liehom.exact.scalars.polynomial import Polynomial
-from liehom.exact.scalars.rational import QQ
+from liehom.exact.scalars.rational import QQ, isolate_real_root
 from liehom.exact.scalars.roots import gaps_between, rationals_inside, real_part_cut
 
 ROOT2 = NumberField("a", [-2, 0, 1], (1, 2))
@@ -48,3 +51,11 @@ def test_numbers_in_an_interval_are_distinct_and_begin_in_its_middle(count: int)
 def test_gaps_lie_between_the_closed_intervals() -> None:
     assert gaps_between([(0, 3), (1, 2), (5, 6), (6, 7), (8, 8)]) == [(3, 5), (7, 8)]
     assert gaps_between([(1, 1)]) == []
+
+
+def test_an_interval_may_end_close_to_a_root() -> None:
+    polynomial, below = flint.fmpz_poly([-2, 0, 1]), flint.fmpq(math.isqrt(2 * 10**120), 10**60)
+    assert isolate_real_root(polynomial, (below, flint.fmpq(2))) == ((below, 2), 1)
+    assert isolate_real_root(polynomial, (-below, flint.fmpq(2)))[1] == 1
+    with pytest.raises(FieldError, match="contains 0 real roots"):
+        isolate_real_root(polynomial, (flint.fmpq(1), below))

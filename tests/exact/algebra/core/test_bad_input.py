@@ -379,7 +379,10 @@ def test_fractions_of_ten_thousand_digits() -> None:
 
 @pytest.mark.slow
 def test_fractions_of_a_million_digits() -> None:
-    check_long_fractions(10**6)
+    with pytest.raises(lh.LimitError, match="digits=1000000"):
+        check_long_fractions(10**6)
+    with lh.limits(digits=10**6):
+        check_long_fractions(10**6)
 
 
 # -- a text or a list where an object is needed ---------------------------------------------------------------
