@@ -15,10 +15,9 @@ import numpy.typing as npt
 
 from liehom.base.disk import digest
 from liehom.base.errors import ConvergenceError
-from liehom.base.pytrees import numbers_of
 from liehom.base.typing import Array, BooleanArray, IntegerArray, Real, Values, ValuesLike
 from liehom.flow.action.field import GeneratorField
-from liehom.flow.action.fingerprint import events_by_name, fingerprint, source_of, stable_repr, values_of
+from liehom.flow.action.fingerprint import events_by_name, fingerprint, stable_repr
 from liehom.flow.action.space import Action
 from liehom.flow.run import solution as files
 from liehom.flow.run.check import gap_of
@@ -519,25 +518,16 @@ class Run(Automaton):
     def _fingerprint(self) -> str:
         """String that distinguishes this problem from others: what was given by name, and values of psi."""
         o, events, field = self.options, self.stops.events, self.field
-        functions = {"psi": source_of(field), "step": self.step, "exponential": self.action.exponential}
+        functions = {"step": self.step, "exponential": self.action.exponential} | events_by_name(o.events)
         numbers = [0 if x is None else x for x in (o.dt, o.t_eval)]
         others = {
-            "initial points": digest(self.start),
-            "time span": digest(np.array(self.span)),
             "options": digest(f"{stable_repr(self.step)} {self.action.exponential.name} {o.fixed_text()}", *numbers),
-            "args": digest(*numbers_of(field.args)),
-            "representation": digest(*(a.to_numpy() for a in field.representation.matrices)),
             "events": ""
             if events is None
             else digest(f"{events.directions} {events.terminal}", *self.state.event_values),
         }
-
-        def call() -> str:
-            if events is not None:
-                events.values(self.state.t, self.start)
-            return values_of(self.action, field, self.start, self.span)
-
-        return fingerprint(functions | events_by_name(o.events), others, call)
+        look = None if events is None else partial(events.values, self.state.t, self.start)
+        return fingerprint(self.action, field, self.start, self.span, functions, others, look)
 
     def _fraction(self) -> float:
         passed = np.min(np.abs(self.state.t - self.span[0]), where=self.state.active, initial=np.inf)
