@@ -56,9 +56,7 @@ def fingerprint(
     action: Action, field: GeneratorField, start: Array, span: tuple[Any, Any], functions: Mapping[str, Part],
     others: Mapping[str, str], events: Callable[[], object] | None,
 ) -> str:  # fmt: skip
-    """The digests of a problem as JSON: of psi and other functions, part by part, "" for a part that a call changes, of
-    values of psi, of numbers, and of other things. `events` calls the functions of events.
-    """
+    """The digests of a problem as JSON: functions part by part, "" for a part that a call changes; values; numbers."""
     functions = {"psi": source_of(field), **functions}
     first = _digests(functions)
     if events is not None:

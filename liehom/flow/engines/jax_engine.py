@@ -69,16 +69,9 @@ def step_for(problem: Problem, dimension: int, known: dict[Hashable, StepOnJax])
     if key not in known:
         try:
             graph = traced_step(
-                action,
-                problem.field,
-                step,
-                points,
-                dimension,
-                nominal=o.nominal,
-                args=_blank(args),
-                lead=lead,
+                action, problem.field, step, points, dimension, nominal=o.nominal, args=_blank(args), lead=lead,
                 branching=False,
-            )
+            )  # fmt: skip
             known[key] = GraphStep(graph) if _is_short(graph) or isinstance(step, Conserving) else array
         except TraceError:
             known[key] = array

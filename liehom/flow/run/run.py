@@ -549,6 +549,10 @@ class Run(Automaton):
         t_events, y_events = now.event_log.lists() if self.stops.events is not None else (None, None)
         record, direction = now.statistics, float(self.direction)
         ended = outcome(now.code, now.ended_at, record.unkept_from, direction, self.step.order, record.loss)
+        report = record.report(
+            self.action, o.clock, self.psi.orbit_dimension, direction, ended.stopped_at,
+            check=o.check(self.field.time_dependent), engine=", ".join(self.engines),
+        )  # fmt: skip
         solution = Solution(
             t=t,
             y=y,
@@ -559,15 +563,7 @@ class Run(Automaton):
             status=ended.status,
             message=ended.message,
             n_steps=now.taken if self.shape else int(now.taken),
-            report=record.report(
-                self.action,
-                o.clock,
-                self.psi.orbit_dimension,
-                direction,
-                ended.stopped_at,
-                check=o.check(self.field.time_dependent),
-                engine=", ".join(self.engines),
-            ),
+            report=report,
             statuses=ended.statuses if self.shape else ended.status,
         )
         return with_steps(solution, dense) if self.keeps else solution
