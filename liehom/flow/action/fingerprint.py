@@ -22,6 +22,7 @@ from typing import Any, TypeAlias, final
 import numpy as np
 
 from liehom.base.disk import digest
+from liehom.base.pytrees import numbers_of
 from liehom.base.typing import Array, Real, Values
 from liehom.flow.action.components import Components
 from liehom.flow.action.field import GeneratorField, LeastNorm
@@ -51,11 +52,30 @@ def events_by_name(events: Part) -> dict[str, Part]:
     return {f"event {i}": g for i, g in enumerate(listed)}
 
 
-def fingerprint(functions: Mapping[str, Part], others: Mapping[str, str], call: Callable[[], str]) -> str:
-    """The digests of functions, part by part, and of other things as JSON; "" for a part that a call changes."""
-    first, values, last = _digests(functions), call(), _digests(functions)
+def fingerprint(
+    action: Action, field: GeneratorField, start: Array, span: tuple[Any, Any], functions: Mapping[str, Part],
+    others: Mapping[str, str], events: Callable[[], object] | None,
+) -> str:  # fmt: skip
+    """The digests of a problem as JSON: functions part by part, "" for a part that a call changes; values; numbers."""
+    functions = {"psi": source_of(field), **functions}
+    first = _digests(functions)
+    if events is not None:
+        events()
+    values, last = values_of(action, field, start, span), _digests(functions)
+    own = {
+        "initial points": digest(start),
+        "time span": digest(np.array(span)),
+        "args": digest(*numbers_of(field.args)),
+        "representation": digest(*(a.to_numpy() for a in field.representation.matrices)),
+        "values of psi": values,
+    }
     state = {label: "" for label, mark in first.items() if mark != last.get(label)}
-    return json.dumps({**last, **others, "values of psi": values, **state}, sort_keys=True)
+    return json.dumps({**last, **own, **others, **state}, sort_keys=True)
+
+
+def parts_of(source: Part) -> Iterator[Part]:
+    """A function or an object, and all that it names, however deep."""
+    return (value for _, _, value, _ in _walk("", lambda: source, {}))
 
 
 def _digests(functions: Mapping[str, Part]) -> dict[str, str]:

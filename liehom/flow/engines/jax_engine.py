@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import inspect
 from collections.abc import Callable, Hashable, Sequence
 from contextlib import nullcontext, suppress
 from dataclasses import replace
-from functools import partial
 from math import ceil
 from typing import Any, NamedTuple, final
 
@@ -17,7 +15,7 @@ from liehom.base.errors import InputError, TraceError
 from liehom.base.pytrees import Leaf, PerTrajectory, leaves, mapped, unwrapped
 from liehom.base.typing import Pytree
 from liehom.flow.action.field import GeneratorField
-from liehom.flow.action.fingerprint import Watch
+from liehom.flow.action.fingerprint import Watch, parts_of
 from liehom.flow.action.quadrics import tight_frame
 from liehom.flow.engines.engine import Problem, executed
 from liehom.flow.engines.jax_kernel import JaxKernel, enabled_x64
@@ -72,16 +70,9 @@ def step_for(problem: Problem, dimension: int, known: dict[Hashable, StepOnJax])
     if key not in known:
         try:
             graph = traced_step(
-                action,
-                problem.field,
-                step,
-                points,
-                dimension,
-                nominal=o.nominal,
-                args=_blank(args),
-                lead=lead,
+                action, problem.field, step, points, dimension, nominal=o.nominal, args=_blank(args), lead=lead,
                 branching=False,
-            )
+            )  # fmt: skip
             known[key] = GraphStep(graph) if _is_short(graph) or isinstance(step, Conserving) else array
         except TraceError:
             known[key] = array
@@ -97,14 +88,9 @@ def representative_points(start: JaxArray, size: int) -> np.ndarray[Any, np.dtyp
 
 def _closes_over_jax(source: object) -> bool:
     """Whether a function uses JAX arrays of its surroundings; a graph would have their numbers in its operations."""
-    while isinstance(source, partial):
-        if any(is_jax(x) for x in (*source.args, *source.keywords.values())):
-            return True
-        source = source.func
-    if not inspect.isfunction(source):
-        return False
-    outside = inspect.getclosurevars(source)
-    return any(map(is_jax, (*outside.nonlocals.values(), *outside.globals.values())))
+    from jax import tree_util
+
+    return any(is_jax(x) for part in parts_of(source) for x in tree_util.tree_leaves(part))
 
 
 def _blank(args: Pytree) -> Pytree:

@@ -6,6 +6,7 @@ import dataclasses
 import os
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from functools import partial
 from itertools import pairwise
 from typing import Any, NamedTuple, TypeAlias, Unpack
 
@@ -14,12 +15,12 @@ import numpy.typing as npt
 
 from liehom.base.disk import digest
 from liehom.base.errors import InputError, LiehomError, ShapeError
-from liehom.base.pytrees import Leaf, PerTrajectory, check_numbers, mapped, numbers_of
+from liehom.base.pytrees import Leaf, PerTrajectory, check_numbers, mapped
 from liehom.base.store import open_store
 from liehom.base.tasks import BUFFERSIZE, ExecutorLike, completed
 from liehom.base.typing import Array, IntegerArray, Pytree
 from liehom.flow.action.field import GeneratorField, check_point
-from liehom.flow.action.fingerprint import events_by_name, fingerprint, source_of, stable_repr, values_of
+from liehom.flow.action.fingerprint import events_by_name, fingerprint, stable_repr
 from liehom.flow.action.space import Action
 from liehom.flow.engines.arguments import EnsembleOptions, least_atol
 from liehom.flow.propagation.integration import integrate
@@ -226,27 +227,19 @@ class EnsembleProblem(NamedTuple):
     def fingerprint(self, field: GeneratorField, bounds: list[tuple[int, int]]) -> str:
         """String that distinguishes this problem from others: what was given by name, and values of psi."""
         options, events = self.options, self.options.get("events")
-        functions = {"psi": source_of(field), "step": options.get("step"), "exponential": options.get("exponential")}
+        functions = {"step": options.get("step"), "exponential": options.get("exponential")} | events_by_name(events)
         texts = [
             f"{name}={stable_repr(options[name])}" for name in sorted(options.keys() - {*ARRAYS, "args", "events"})
         ]
-        span = np.array(self.ends())
         others = {
-            "initial points": digest(self.start),
-            "time span": digest(span),
             "options": digest(*texts, *(np.asarray(options[name]) for name in ARRAYS if options.get(name) is not None)),
             "chunk": digest(repr(bounds)),
-            "args": digest(*numbers_of(options.get("args"))),
             "parameters": digest(*(x for item in sorted(self.parameters.items()) for x in item)),
-            "representation": digest(*(a.to_numpy() for a in field.representation.matrices)),
         }
-
-        def call() -> str:
-            if events is not None:
-                Events(events, field.args).values(np.full(self.start.shape[:-1], span[0]), self.start)
-            return values_of(Action(field.representation), field, self.start, (span[0], span[1]))
-
-        return fingerprint(functions | events_by_name(events), others, call)
+        look, (begin, end) = None, np.array(self.ends())
+        if events is not None:
+            look = partial(Events(events, field.args).values, np.full(self.start.shape[:-1], begin), self.start)
+        return fingerprint(Action(field.representation), field, self.start, (begin, end), functions, others, look)
 
 
 def solved(task: EnsembleProblem) -> Solution:

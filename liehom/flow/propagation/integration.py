@@ -74,8 +74,8 @@ def integrate(
         The largest number of steps of a trajectory; at that number it ends with status -1.
     looks : int, optional
         How often psi is looked at across the time span, besides once in each step, before adaptive steps are taken. A
-        feature longer than the time between two looks is seen. 0 switches the check off (default: 128 for psi(m, t),
-        and no more than once in each step for psi(m)).
+        feature longer than the time between two looks is seen. 0 switches the check off (default: 128 for psi(m, t);
+        for psi(m) by the way of a point, docs/step-sizes.md).
     progress : bool or callable
         A progress bar on standard error, or a function of the fraction done.
     checkpoint : path, optional

@@ -15,10 +15,9 @@ import numpy.typing as npt
 
 from liehom.base.disk import digest
 from liehom.base.errors import ConvergenceError
-from liehom.base.pytrees import numbers_of
 from liehom.base.typing import Array, BooleanArray, IntegerArray, Real, Values, ValuesLike
 from liehom.flow.action.field import GeneratorField
-from liehom.flow.action.fingerprint import events_by_name, fingerprint, source_of, stable_repr, values_of
+from liehom.flow.action.fingerprint import events_by_name, fingerprint, stable_repr
 from liehom.flow.action.space import Action
 from liehom.flow.run import solution as files
 from liehom.flow.run.check import gap_of
@@ -519,25 +518,16 @@ class Run(Automaton):
     def _fingerprint(self) -> str:
         """String that distinguishes this problem from others: what was given by name, and values of psi."""
         o, events, field = self.options, self.stops.events, self.field
-        functions = {"psi": source_of(field), "step": self.step, "exponential": self.action.exponential}
+        functions = {"step": self.step, "exponential": self.action.exponential} | events_by_name(o.events)
         numbers = [0 if x is None else x for x in (o.dt, o.t_eval)]
         others = {
-            "initial points": digest(self.start),
-            "time span": digest(np.array(self.span)),
             "options": digest(f"{stable_repr(self.step)} {self.action.exponential.name} {o.fixed_text()}", *numbers),
-            "args": digest(*numbers_of(field.args)),
-            "representation": digest(*(a.to_numpy() for a in field.representation.matrices)),
             "events": ""
             if events is None
             else digest(f"{events.directions} {events.terminal}", *self.state.event_values),
         }
-
-        def call() -> str:
-            if events is not None:
-                events.values(self.state.t, self.start)
-            return values_of(self.action, field, self.start, self.span)
-
-        return fingerprint(functions | events_by_name(o.events), others, call)
+        look = None if events is None else partial(events.values, self.state.t, self.start)
+        return fingerprint(self.action, field, self.start, self.span, functions, others, look)
 
     def _fraction(self) -> float:
         passed = np.min(np.abs(self.state.t - self.span[0]), where=self.state.active, initial=np.inf)
@@ -559,6 +549,10 @@ class Run(Automaton):
         t_events, y_events = now.event_log.lists() if self.stops.events is not None else (None, None)
         record, direction = now.statistics, float(self.direction)
         ended = outcome(now.code, now.ended_at, record.unkept_from, direction, self.step.order, record.loss)
+        report = record.report(
+            self.action, o.clock, self.psi.orbit_dimension, direction, ended.stopped_at,
+            check=o.check(self.field.time_dependent), engine=", ".join(self.engines),
+        )  # fmt: skip
         solution = Solution(
             t=t,
             y=y,
@@ -569,15 +563,7 @@ class Run(Automaton):
             status=ended.status,
             message=ended.message,
             n_steps=now.taken if self.shape else int(now.taken),
-            report=record.report(
-                self.action,
-                o.clock,
-                self.psi.orbit_dimension,
-                direction,
-                ended.stopped_at,
-                check=o.check(self.field.time_dependent),
-                engine=", ".join(self.engines),
-            ),
+            report=report,
             statuses=ended.statuses if self.shape else ended.status,
         )
         return with_steps(solution, dense) if self.keeps else solution

@@ -671,11 +671,11 @@ class Conserving(Step):
         frame = action.isotropy_frame(m, psi.orbit_dimension)
         factor = 0.5 if self.one_exponential else 1.0
         chi = Conservation(action, known.integral, frame, m, psi.field.psi(m, time), factor)
+        target = known.target
         if type(m) is Traced:
             target = self._traced_target(known.integral, m)
-        else:  # of some trajectories of a run, if they have initial points of their own
-            own = psi.start is None or psi.start is known.start
-            target = known.target if own else self._target(known.integral, psi.start)
+        elif psi.start is not None and psi.start is not known.start:  # some trajectories of the run
+            target = self._target(known.integral, psi.start)
         return ConservingStep(local, chi, target, known.n, one_exponential=self.one_exponential, linear=self.linear)
 
     def _target(self, integral: FirstIntegral, start: Values) -> Values | None:

@@ -10,7 +10,7 @@ from scipy.integrate import solve_ivp
 
 import liehom as lh
 from liehom.base.errors import InputError
-from liehom.flow.run.check import LOOKS, widest_gap
+from liehom.flow.run.check import LOOKS, MAX_WAY, widest_gap
 
 START = np.array([0.36, 0.48, 0.8])
 RHO = lh.adjoint(lh.so(3))
@@ -28,6 +28,12 @@ def along(amplitude: Callable[[Any], Any], background: float = 0.0) -> lh.Genera
     return lh.GeneratorField(RHO, psi)
 
 
+def spot(m: Any) -> Any:
+    """A turn about one axis, through a spot of another one that is met in each turn, of width |m| / 17."""
+    near = np.exp(-((m - [-0.6, 0.0, 0.8]) ** 2).sum(axis=-1) / 0.06**2)
+    return np.stack([20 * near, 0 * near, 1 + 0 * near], axis=-1)
+
+
 def wall(m: Any) -> Any:
     speed = 1 + np.tanh((m[..., 1] - 0.3) / 0.01)
     return np.stack([0 * speed, 0 * speed, speed], axis=-1)
@@ -42,6 +48,7 @@ FEATURES: dict[str, lh.GeneratorField] = {
     "t^8": along(lambda t: (t / 10) ** 8),
     "logistic": along(lambda t: 1 / (1 + np.exp(-100 * (t - 5.3)))),
     "wall": lh.GeneratorField(RHO, wall),
+    "spot": lh.GeneratorField(RHO, spot),
     "sin^6 from its top": along(lambda t: 2 * np.sin(np.pi * (t + 5) / 10) ** 6),
 }
 SMOOTH = {
@@ -94,9 +101,32 @@ def test_without_looks_they_are_missed_and_the_report_says_so() -> None:
     "step", ["rk45", "dop853", "radau5", "rodas4", lh.LieTaylor(6), lh.Corrected("euler", 4)], ids=str
 )
 def test_named_steps_see_features(step: Any) -> None:
-    for name in ("Gaussian of width span/100", "Gaussian at rest", "ramp sin^8", "logistic", "wall"):
+    for name in ("Gaussian of width span/100", "Gaussian at rest", "ramp sin^8", "logistic", "wall", "spot"):
         found, solution = error(name, step=step)
         assert solution.success and found < 1e-4, name
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_an_exponential_that_turns_a_point_many_times_looks_on_the_way(engine: str) -> None:
+    """Between two looks at psi(m) a point moves by 0.22 |m| at most; 128 looks across the span are enough."""
+    if engine != "numpy":
+        pytest.importorskip("llvmlite" if engine == "llvm" else "jax")
+    found, solution = error("spot", step=lh.LieTaylor(4), engine=engine)
+    assert solution.success and found < 1e-4
+    still = lh.GeneratorField(RHO, [0, 0, 1])
+    for span in (0.3, 3.0, 1e6):  # the start moves by 0.6 |m| in a unit of time
+        solution = lh.integrate(still, (0, span), START, step=lh.LieTaylor(4), engine=engine)
+        assert solution.n_steps == 1
+        assert solution.report.looks == min(int(np.ceil(0.6 * span / MAX_WAY)), LOOKS)
+
+
+def test_a_pair_asks_psi_as_often_as_a_series() -> None:
+    still = lh.GeneratorField(RHO, [0, 0, 1])
+    for step in ("rk45", "dop853", "radau5", "rodas4"):
+        named = lh.methods.step_named(step)
+        local = named.at(lh.Action(RHO), lh.steps.Generator(still, 2), START, np.zeros(1))
+        times = lh.integrate(still, (0, 30), START, step=step).t
+        assert np.diff(times).max() == pytest.approx(MAX_WAY / local.widest_gap / 0.6)
 
 
 @pytest.mark.parametrize("engine", ["llvm", "jax"])
