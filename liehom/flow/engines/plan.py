@@ -68,7 +68,7 @@ class Numbers(NamedTuple):
 
 
 BOUNDS = frozenset(["dt", "rtol", "atol", "max_step", "min_step", "first_step", "max_steps"])
-ABSENT = frozenset(["dt", "first_step", "looks", "checkpoint"])
+ABSENT = frozenset(["dt", "first_step", "looks", "checkpoint", "t_eval", "events"])
 
 
 @lru_cache(maxsize=256, typed=True)
@@ -119,10 +119,7 @@ def _are_in_order(times: Array, begin: float, end: float) -> bool:
     first, last = float(times[0]), float(times[-1])
     if not (begin <= first <= last <= end if end > begin else begin >= first >= last >= end):
         return False
-    if len(times) <= 2:
-        return len(times) == 1 or first != last
-    steps = np.diff(times)
-    return bool((steps > 0).all() if end > begin else (steps < 0).all())
+    return len(times) == 1 or bool((np.diff(times) * (1 if end > begin else -1) > 0).all())
 
 
 def form_of(
@@ -287,25 +284,21 @@ class Plan:
             pieces = [piece for piece in made if piece is not None]
             if not pieces or len(pieces) < len(made):
                 return None
-            path = _joined(pieces, self.lanes) if keeps else None
+            path: Any = _joined(pieces, self.lanes) if keeps else None
             numbers = np.concatenate([x[2] for x in pieces], axis=1)
         if not self.is_judged and numbers[self.count].max() >= MIN_STEPS:
             self.is_judged = True  # an ordinary call says whether the field is stiff
             return None
-        t: Any = times
-        result: Any = y
         n, shape, log = self.n, self.shape, None
         if path is not None and self.events is not None and (log := self.events(path, values, span)) is None:
             return None
+        t: Any
         if y is not None:
-            t, result = t.copy(), y if shape else y[0]
-        elif path is not None and shape:
-            t, result = path[:, n].T, path[:, :n].transpose(2, 1, 0)
-            t = t.reshape(*shape, -1)
-        elif path is not None:
+            t, result = times.copy(), y.reshape(*shape, *y.shape[1:])  # type: ignore[union-attr]
+        elif shape:
+            t, result = path[:, n].T.reshape(*shape, -1), path[:, :n].transpose(2, 1, 0).reshape(*shape, n, -1)
+        else:
             t, result = path[:, n, 0], path[:, :n, 0].T
-        if len(shape) > 1:
-            result = result.reshape(*shape, *result.shape[1:])
         # what the other entries need is copied: points may change
         start = None if self.ranked is None else points.copy()
         return solution_of(t, result, END, lambda: self._others(task, args, numbers, path, start, log))
