@@ -2,10 +2,10 @@
 
     python -m tests.benchmarks.large_ensembles [--count 1000000] [--workers 2]
 
-The field is the rigid body, by tolerance alone (rtol 1e-6, to t = 10) with the points at five times. Time is that of the
-second call of a propagator. Memory is the peak over both calls, less what the process has before the first one, as a
-multiple of the result. Each row is a process of its own. With dask the chunks are those of `integrate_ensemble`, and time
-and memory are those of the caller. Bytes are the pickled chunks, as they move to the workers and back.
+The field is the rigid body, by tolerance alone (rtol 1e-6, to t = 10) with the points at five times. Time is that of
+the second call of a propagator. Memory is the peak over both calls, less that before the first one, as a multiple of
+the result. Each row is a process of its own. With dask the chunks are those of `integrate_ensemble`, and
+time and memory are those of the caller. Bytes are the pickled chunks, as they move to the workers and back.
 """
 
 import argparse

@@ -2,8 +2,8 @@
 
     python -m tests.benchmarks.without_llvmlite [--print]
 
-Costs are processor times of whole calls after the first ones, read off the curve over swept tolerances (rtol = atol). The
-first call is that of a new propagator at rtol = atol = 1e-6. The table is written into docs/performance.md.
+Costs are processor times of whole calls after the first ones, read off the curve over swept tolerances (rtol = atol).
+The first call is that of a new propagator at rtol = atol = 1e-6. The table is written into docs/performance.md.
 """
 
 import argparse
@@ -11,8 +11,6 @@ import os
 import sys
 import time
 import warnings
-
-sys.modules["llvmlite"] = None  # type: ignore[assignment]  # before liehom looks for it
 
 import liehom as lh
 from tests.benchmarks.by_tolerance import PAGE
@@ -61,6 +59,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--print", action="store_true", help="leave the page as it is")
     options = parser.parse_args()
+    sys.modules["llvmlite"] = None  # type: ignore[assignment]  # before liehom looks for it
     if hasattr(os, "sched_setaffinity"):
         os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})
     warnings.simplefilter("ignore")

@@ -160,11 +160,11 @@ class Memory:
         first = kernel.packed(lanes, {"alive": 1.0, **lowest_numbers(kernel.graph)})
         self.first, self.block = np.array([first, first]), np.array([first, first])
         self.state, self.start = self.block[0], self.block[1, : kernel.graph.size]
-        self.cells = memoryview(self.state.reshape(-1))
+        self.cells = self.state.reshape(-1).data.cast("B").cast("d")
         self.points: Array = self.block[:, : kernel.graph.size, :lanes].transpose(0, 2, 1)
         self.rows: Array = np.ones((max(1, len(kernel.lane_constants)), self.state.shape[1]))
         argument = kernel.argument(self.state, start=self.start, rows=self.rows, constants=constants)
-        self.integers, self.floats = memoryview(argument), memoryview(argument.view(np.float64))
+        self.integers, self.floats = argument.data, argument.data.cast("B").cast("d")
         self.address: int = argument.ctypes.data
         self.arrays: dict[str, Array] = dict.fromkeys(["stops", "out", "path"], np.zeros(0))
         self.room("stops", 2)

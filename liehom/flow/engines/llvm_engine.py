@@ -111,10 +111,9 @@ class LlvmEngine:
             points, times = floats("the start", y0), options.get("t_eval")
             if points is None or (times is not None and (times := floats("t_eval", times)) is None):
                 return None
-            others, events = options, None
-            if times is not None or "events" in options or "t_eval" in options:
+            others, events = options, options.get("events")
+            if times is not None or events is not None:
                 others = {name: x for name, x in options.items() if name not in ("t_eval", "events")}
-                events = options.get("events")
             try:
                 numbers = numbers_of(**others)
             except TypeError:  # sizes in an array are not hashable

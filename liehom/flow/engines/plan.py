@@ -68,7 +68,7 @@ class Numbers(NamedTuple):
 
 
 BOUNDS = frozenset(["dt", "rtol", "atol", "max_step", "min_step", "first_step", "max_steps"])
-ABSENT = frozenset(["dt", "first_step", "looks", "checkpoint"])
+ABSENT = frozenset(["dt", "first_step", "looks", "checkpoint", "t_eval", "events"])
 
 
 @lru_cache(maxsize=256, typed=True)
@@ -119,10 +119,7 @@ def _are_in_order(times: Array, begin: float, end: float) -> bool:
     first, last = float(times[0]), float(times[-1])
     if not (begin <= first <= last <= end if end > begin else begin >= first >= last >= end):
         return False
-    if len(times) <= 2:
-        return len(times) == 1 or first != last
-    steps = np.diff(times)
-    return bool((steps > 0).all() if end > begin else (steps < 0).all())
+    return len(times) == 1 or bool((np.diff(times) * (1 if end > begin else -1) > 0).all())
 
 
 def form_of(
@@ -231,7 +228,7 @@ class Plan:
         self.count = self.kept.index("count")
         self.ranked = ranked(self.lanes) if step.uses_isotropy else None
         self.constants: Array = np.zeros(max(1, len(kernel.run_constants)))
-        self.slots = memoryview(self.constants)
+        self.slots = self.constants.data.cast("B").cast("d")
         self.slot = {name: i for i, name in enumerate(kernel.run_constants)}
         self.own = [(i, OF_A_CALL.index(name)) for name, i in self.slot.items() if name in OF_A_CALL]
         names = () if problem.args is None else arg_values(problem.args, len(self.shape))
@@ -258,7 +255,7 @@ class Plan:
         if (numbers.shape and numbers.shape != self.shape) or not (self.events is None or self.is_current):
             return None
         if self.lockstep:
-            total = max(ceil(length / dt - (SLACK + rest / dt)), 1)  # type: ignore[operator,arg-type]
+            total = max(ceil(length / dt - (SLACK + rest / dt)), 1)  # type: ignore[operator]
             if total >= numbers.max_steps:
                 return None
         if (times is not None and not _are_in_order(times, begin, end)) or not self.lock.acquire(blocking=False):
@@ -275,6 +272,7 @@ class Plan:
     def _solution(self, task: Task, args: Pytree) -> Solution | None:
         _, points, times, span, values, total, y, keeps = task
         rows = total if self.lockstep or not keeps else self.rows
+        path: Any
         if self.memory is not None and rows <= self.short:
             piece = self._made(task, slice(0, self.lanes), self.memory)
             if piece is None:
@@ -292,20 +290,16 @@ class Plan:
         if not self.is_judged and numbers[self.count].max() >= MIN_STEPS:
             self.is_judged = True  # an ordinary call says whether the field is stiff
             return None
-        t: Any = times
-        result: Any = y
         n, shape, log = self.n, self.shape, None
         if path is not None and self.events is not None and (log := self.events(path, values, span)) is None:
             return None
+        t: Any
         if y is not None:
-            t, result = t.copy(), y if shape else y[0]
-        elif path is not None and shape:
-            t, result = path[:, n].T, path[:, :n].transpose(2, 1, 0)
-            t = t.reshape(*shape, -1)
-        elif path is not None:
+            t, result = times.copy(), y.reshape(*shape, *y.shape[1:])  # type: ignore[union-attr]
+        elif shape:
+            t, result = path[:, n].T.reshape(*shape, -1), path[:, :n].transpose(2, 1, 0).reshape(*shape, n, -1)
+        else:
             t, result = path[:, n, 0], path[:, :n, 0].T
-        if len(shape) > 1:
-            result = result.reshape(*shape, *result.shape[1:])
         # what the other entries need is copied: points may change
         start = None if self.ranked is None else points.copy()
         return solution_of(t, result, END, lambda: self._others(task, args, numbers, path, start, log))
@@ -386,17 +380,17 @@ class Plan:
         tiny = rest if dt is not None or rest > least else least
         gap = (gap_of(looks, end - begin, self.problem.field) if "gap" in self.slot else None) or 0.0
         direction, latest = bounds_of((begin, end))
-        known = 1.0, direction, rest, end, rtol, atol, most, tiny, gap, latest
+        known: Any = 1.0, direction, rest, end, rtol, atol, most, tiny, gap, latest
         slots = self.slots
         for place, i in self.own:
             slots[place] = known[i]
         values: dict[str, Any] = {"direction": direction}
         if found is None:
             return values
-        for (name, place), number in zip(self.names, numbers_in(found, len(self.shape)), strict=True):
+        for (name, slot), number in zip(self.names, numbers_in(found, len(self.shape)), strict=True):
             values[name] = number
-            if place is not None:
-                slots[place] = number
+            if slot is not None:
+                slots[slot] = number
         return values
 
     def _to_the_end(self, memory: Memory, count: int, task: Task) -> Array | None:
@@ -461,7 +455,7 @@ class Plan:
         report = statistics.report(p.action, p.options.clock, p.orbit_dimension, task[4]["direction"], **how)
 
         def dense() -> DenseSolution:
-            steps = path.swapaxes(1, 2).reshape(-1, *shape, self.n + 2)  # type: ignore[index]
+            steps = path.swapaxes(1, 2).reshape(-1, *shape, self.n + 2)  # type: ignore[union-attr]
             times, points, sizes = steps[..., self.n], steps[..., : self.n], np.nan_to_num(steps[1:, ..., self.n + 1])
             psi = Generator(bound, p.orbit_dimension, points[0])
             step = p.step.prepare(p.action, psi, psi.start, np.full(shape, p.span[0]))  # type: ignore[arg-type]

@@ -73,23 +73,6 @@ def engine_of(engine: str | Engine) -> Engine:
     raise InputError(f"engine is {displayed(engine)}, expected one of {', '.join(map(repr, ENGINES))}")
 
 
-# BoundCall: a call of a propagator from the same points, for inner loops.
-
-
-@final
-class BoundCall:
-    """A call of a propagator from its points, as a function of time span and args."""
-
-    def __init__(self, propagator: Propagator, points: Values, args: Pytree, options: CallOptions) -> None:
-        self._propagator, self._points, self._args, self._options = propagator, points, args, options
-
-    def __call__(self, t_span: Iterable[float] | Span, args: Pytree = None) -> Solution:
-        """The trajectories over a time span, with other args if they are given."""
-        self._args = args if self._args is None else self._args
-        args = self._args if args is None else args
-        return self._propagator._called(t_span, self._points, args, self._options, stacklevel=4)
-
-
 # Inspection: what a step can do at given points, without a step being made.
 
 
@@ -263,7 +246,9 @@ class Propagator:
         """The solution of a `problem` of this propagator, by its engine; by numpy if the group fixes a point."""
         return (NumpyEngine() if has_fixed_points(problem) else self._engine_for(problem.step)).solve(problem)
 
-    def bind(self, y0: npt.ArrayLike, *, args: Pytree = None, **options: Unpack[CallOptions]) -> BoundCall:
+    def bind(
+        self, y0: npt.ArrayLike, *, args: Pytree = None, **options: Unpack[CallOptions]
+    ) -> Callable[..., Solution]:
         """The call from y0 as a function of time span and args, for inner loops.
 
         Parameters and options are those of a call.
@@ -277,7 +262,13 @@ class Propagator:
         [0, 0]
         """
         check_option_names(set(options) - set(CallOptions.__annotations__))
-        return BoundCall(self, y0 if is_jax(y0) else points_of(y0), args, options)
+        points, own = y0 if is_jax(y0) else points_of(y0), [args]
+
+        def bound(t_span: Iterable[float] | Span, args: Pytree = None) -> Solution:
+            own[0] = args if own[0] is None else own[0]
+            return self._called(t_span, points, own[0] if args is None else args, options, stacklevel=4)
+
+        return bound
 
     def inspect(self, y0: npt.ArrayLike, t: float = 0.0, *, args: Pytree = None) -> Inspection:
         """Orders, ranks and singular values of the step at points, an `Inspection`; no step is made.

@@ -306,6 +306,39 @@ def test_bad_input_raises_in_every_call_what_it_raises_in_the_first(bad: dict[st
     assert errors[0] == errors[1]
 
 
+def test_a_number_is_not_taken_for_one_of_another_type_that_is_equal() -> None:
+    made, _ = propagator(step=lh.Taylor(4))
+    for _ in range(2):
+        made((0.0, 1.0), START, looks=1)
+    with pytest.raises(InputError, match="looks is True"):
+        made((0.0, 1.0), START, looks=True)
+    field = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m, t, args: -m * args)
+    made, _ = propagator(field, lh.Taylor(4))
+    for _ in range(2):
+        made((0.0, 1.0), START, args=np.ones(3))
+    with pytest.raises(InputError, match="masked"):
+        made((0.0, 1.0), START, args=np.ma.masked_array(np.ones(3)))
+
+
+@pytest.mark.parametrize("shape", [(1,), (2, 3), (1, 1)])
+@pytest.mark.parametrize("options", [{"dt": 0.1}, {"rtol": 1e-6}, {"rtol": 1e-6, "t_eval": [0.0, 0.5, 1.0]}], ids=str)
+def test_solutions_have_the_axes_of_the_points(options: dict[str, Any], shape: tuple[int, ...]) -> None:
+    points = sphere(int(np.prod(shape))).reshape(*shape, 3)
+    made, engine = propagator(step=lh.Taylor(8))
+    first = made((0.0, 1.0), points, **options)
+    again = made((0.0, 1.0), points, **options)
+    assert engine.solved == 1 and again.y.shape[:-1] == points.shape and again.n_steps.shape == shape
+    assert_same(again, first)
+
+
+@pytest.mark.parametrize("options", [{"dt": 0.1}, {"rtol": 1e-6}, {"rtol": 1e-6, "t_eval": [1.0]}], ids=str)
+def test_a_first_call_in_pieces_is_the_first_call(options: dict[str, Any], monkeypatch: pytest.MonkeyPatch) -> None:
+    points = sphere(100) * np.linspace(0.5, 3.0, 100)[:, None]
+    whole = propagator(step=lh.Taylor(8))[0]((0.0, 1.0), points, **options)
+    monkeypatch.setattr(llvm_engine, "CHUNK", 24)
+    assert_same(propagator(step=lh.Taylor(8))[0]((0.0, 1.0), points, **options), whole)
+
+
 @pytest.mark.parametrize("threads", ["1", "3"])
 @pytest.mark.parametrize("options", [{"dt": 0.1}, {"dt": 0.1, "t_eval": [0.55, 1.0]}, {"rtol": 1e-9}], ids=str)
 def test_an_ensemble_in_pieces_is_the_ensemble(
