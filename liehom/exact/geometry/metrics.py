@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, final
 
 import numpy as np
 
-from liehom.base.errors import FieldError, InputError, ShapeError, SingularError, displayed
+from liehom.base.errors import FieldError, InputError, ShapeError, SingularError, UndecidedError, displayed
 from liehom.base.typing import ScalarLike, VectorLike
 from liehom.exact.algebra.core.lie_algebra import LieAlgebra
 from liehom.exact.algebra.core.subalgebra import Subalgebra
@@ -81,6 +81,28 @@ class InvariantMetrics:
     def dimension(self) -> int:
         """Number r of parameters, an int."""
         return len(self.basis)
+
+    @property
+    def diagonal(self) -> bool:
+        """Whether the positive definite metrics are those with positive parameters: their cone is an orthant."""
+        definite = self.reference is not None and all(f.signature()[1] == 0 for f in self.basis)
+        return definite and sum(f.rank() for f in self.basis) == self.split.dimension
+
+    def signatures(self) -> tuple[tuple[int, int], ...]:
+        """The pairs (positive, negative) of all non-degenerate invariant metrics, for a `diagonal` family.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> lh.pair("su(3)/su(2)").invariant_metrics().signatures()
+        ((0, 5), (1, 4), (4, 1), (5, 0))
+        """
+        if not self.diagonal:
+            raise UndecidedError(f"{self!r} are not diagonal, so their signatures are not listed; ask single metrics")
+        d, sums = self.split.dimension, {0}
+        for form in self.basis:
+            sums |= {s + form.rank() for s in sums}
+        return tuple((p, d - p) for p in sorted(sums))
 
     def _definite(self, forms: list[ExactMatrix]) -> ExactMatrix | None:
         """A positive definite form: minus the Killing form, else a member of the basis up to sign, or their sum."""
