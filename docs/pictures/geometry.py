@@ -62,8 +62,8 @@ def scalar_curvature_of_flags(colours: Sequence[str]) -> Any:
     metrics = lh.pair("SU(3)/T^2").invariant_metrics()
     scalar = metrics.generic().scalar()
     corners = np.array([[0, 0], [1, 0], [0.5, 0.75**0.5]])
-    grid = [(i, j, 150 - i - j) for i in range(1, 150) for j in range(1, 150 - i)]
-    x = np.array(grid) / 150
+    grid = [(i, j, 100 - i - j) for i in range(1, 100) for j in range(1, 100 - i)]
+    x = np.array(grid) / 100
     level = curvature(scalar, x) * np.prod(x, axis=1) ** (1 / 3)
     u, v = (x @ corners).T
     levels = [-10, 10, 20, 25, 28, 29, 29.6, 29.9, 30.05, 30.15, 30.238, 30.4, 30.7, 31.2, 32, 34, 38]

@@ -12,9 +12,9 @@
             |  'P{' digits { ',' digits } '}'
 
 Blanks are ignored, and capitals are not distinguished. Printing a tree and parsing the string gives the same tree.
-`parse` drops parameters that are the default, so 'sl(3,R)' prints as 'sl(3)' and 'so(3,0)' as 'so(3)', and replaces
-other spellings: 'schrodinger(3)' prints as 'schroedinger(3)', 'poincare(3)' as 'iso(3,1)', 'SE(3)' as 'e(3)', and
-'CP^3' as 'su(4)/u(3)': the name of a space is a spelling of the pair that `space_name` says.
+`parse` drops parameters that are the default, so 'sl(3,R)' prints as 'sl(3)' and 'so(3,0)' as 'so(3)'. It replaces
+other spellings: 'schrodinger(3)' prints as 'schroedinger(3)', 'poincare(3)' as 'iso(3,1)', 'SE(3)' as 'e(3)'. The
+name of a space is a spelling of the pair that `space_name` says, so 'CP^3' prints as 'su(4)/u(3)'.
 """
 
 from __future__ import annotations
@@ -280,7 +280,7 @@ class _Parser:
         return Sum(tuple(summands)) if len(summands) > 1 else summands[0]
 
     def follows_a_factor(self) -> bool:
-        """Whether the token stands right after ')' or an exponent."""
+        """Whether the token directly follows ')' or an exponent."""
         last, start = self.tokens[self.at - 1]
         return last[0] in ")^" and start + len(last) == self.position()
 

@@ -19,13 +19,12 @@ from liehom.base.budget import in_time, within
 from liehom.base.errors import InputError, InternalError, ShapeError, UndecidedError, displayed
 from liehom.base.typing import ScalarLike
 from liehom.exact.geometry.metrics import InvariantMetric, curvature_of
-from liehom.exact.geometry.reductive import ObjectArray, ReductiveSplit, reductive_split
+from liehom.exact.geometry.reductive import ObjectArray, ReductiveSplit, kernel_projector, reductive_split
 from liehom.exact.representations.core.pair import Pair
 from liehom.exact.representations.invariants.intertwiners import MatrixAlgebra, commutant, intertwiners, invariant_forms
 from liehom.exact.scalars.exact_field import ExactField, ExactMatrix
 from liehom.exact.scalars.field import Matrix, Scalar
 from liehom.exact.scalars.number_fields import common_field
-from liehom.exact.scalars.polynomial import Polynomial
 from liehom.exact.scalars.polynomial_matrix import PolynomialMatrix
 from liehom.exact.scalars.rational import QQ
 
@@ -268,7 +267,7 @@ def almost_complex_structures(split: ReductiveSplit) -> list[ExactMatrix]:
             return []  # a summand of real type
         if factor.degree > 2:
             raise UndecidedError("the isotropy summands are not defined over the field of the pair; extend it by .over")
-        units.append((_restricted(generator, polynomial, factor), factor))
+        units.append((kernel_projector(generator, polynomial, factor), factor))
     # (T - b)^2 = -c on a summand with polynomial t^2 - 2 b t + b^2 + c
     signs = [(f.coefficients[1] * f.coefficients[1] / 4 - f.coefficients[0]) for _, f in units]
     if any(field.sign(s) >= 0 for s in signs):
@@ -282,25 +281,6 @@ def almost_complex_structures(split: ReductiveSplit) -> list[ExactMatrix]:
         sum((b.scale(e) for e, b in zip(choice, blocks, strict=True)), over.zeros(d, d))
         for choice in product((1, -1), repeat=len(blocks))
     ]
-
-
-def _restricted(generator: ExactMatrix, polynomial: Polynomial, factor: Polynomial) -> ExactMatrix:
-    """The projector onto the kernel of a factor of the squarefree minimal polynomial at a matrix."""
-    field, d = generator.field, generator.nrows
-    kernel = _evaluated(factor, generator).null_space()
-    other = _evaluated(polynomial // factor, generator).null_space() if polynomial.degree > factor.degree else None
-    if other is None:
-        return field.identity(d)
-    basis = field.stack_rows([kernel, other], d)
-    return (basis.inverse().select(columns=range(kernel.nrows)) @ kernel).T
-
-
-def _evaluated(polynomial: Polynomial, matrix: ExactMatrix) -> ExactMatrix:
-    """A polynomial at a square matrix."""
-    total, one = matrix.field.zeros(*matrix.shape), matrix.field.identity(matrix.nrows)
-    for c in reversed(polynomial.coefficients):
-        total = total @ matrix + one.scale(c)
-    return total
 
 
 def _nijenhuis(split: ReductiveSplit, j: ObjectArray) -> ObjectArray:

@@ -8,6 +8,7 @@ sectional curvature is <R(X, Y) Y, X> over the square of the area. The unit sphe
 
 from __future__ import annotations
 
+import random
 from collections.abc import Sequence
 from functools import cached_property
 from itertools import combinations
@@ -15,18 +16,24 @@ from typing import TYPE_CHECKING, Any, final
 
 import numpy as np
 
-from liehom.base.errors import FieldError, InputError, ShapeError, SingularError, displayed
+from liehom.base.errors import FieldError, InputError, ShapeError, SingularError, UndecidedError, displayed
 from liehom.base.typing import ScalarLike, VectorLike
 from liehom.exact.algebra.core.lie_algebra import LieAlgebra
 from liehom.exact.algebra.core.subalgebra import Subalgebra
 from liehom.exact.algebra.core.tables import field_of_values
-from liehom.exact.geometry.reductive import ObjectArray, ReductiveSplit, Value, has_solution, reductive_split
+from liehom.exact.geometry.reductive import (
+    ObjectArray,
+    ReductiveSplit,
+    Value,
+    has_solution,
+    kernel_projector,
+    reductive_split,
+)
 from liehom.exact.representations.core.pair import Pair
 from liehom.exact.representations.invariants.intertwiners import MatrixAlgebra, invariant_forms
 from liehom.exact.scalars.exact_field import ExactField, ExactMatrix
 from liehom.exact.scalars.field import Matrix
 from liehom.exact.scalars.function_field import FunctionField, RationalFunction
-from liehom.exact.scalars.polynomial import Polynomial
 from liehom.exact.scalars.rational import QQ
 
 if TYPE_CHECKING:
@@ -75,6 +82,28 @@ class InvariantMetrics:
         """Number r of parameters, an int."""
         return len(self.basis)
 
+    @property
+    def diagonal(self) -> bool:
+        """Whether the positive definite metrics are those with positive parameters: their cone is an orthant."""
+        definite = self.reference is not None and all(f.signature()[1] == 0 for f in self.basis)
+        return definite and sum(f.rank() for f in self.basis) == self.split.dimension
+
+    def signatures(self) -> tuple[tuple[int, int], ...]:
+        """The pairs (positive, negative) of all non-degenerate invariant metrics, for a `diagonal` family.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> lh.pair("su(3)/su(2)").invariant_metrics().signatures()
+        ((0, 5), (1, 4), (4, 1), (5, 0))
+        """
+        if not self.diagonal:
+            raise UndecidedError(f"{self!r} are not diagonal, so their signatures are not listed; ask single metrics")
+        d, sums = self.split.dimension, {0}
+        for form in self.basis:
+            sums |= {s + form.rank() for s in sums}
+        return tuple((p, d - p) for p in sorted(sums))
+
     def _definite(self, forms: list[ExactMatrix]) -> ExactMatrix | None:
         """A positive definite form: minus the Killing form, else a member of the basis up to sign, or their sum."""
         killing = -self.split.killing()
@@ -99,7 +128,7 @@ class InvariantMetrics:
         factors = [f for f, _ in polynomial.factor()]
         if any(f.degree > 1 for f in factors):
             return forms
-        parts = [_projector(generator, polynomial, f) for f in factors]
+        parts = [kernel_projector(generator, polynomial, f) for f in factors]
         blocks = [self.reference @ p for p in parts]
         return sorted(blocks, key=lambda f: (f.rank(), f.first_nonzero_row() or 0))
 
@@ -187,16 +216,6 @@ class InvariantMetrics:
         return f"<invariant metrics of {self.pair!r}: {self.dimension} parameters>"
 
 
-def _projector(generator: ExactMatrix, polynomial: Polynomial, factor: Polynomial) -> ExactMatrix:
-    """The projector onto the kernel of a linear factor of the minimal polynomial at a matrix."""
-    cofactor, one = polynomial // factor, generator.field.identity(generator.nrows)
-    scale = cofactor(-factor.coefficients[0])
-    value = generator.field.zeros(*generator.shape)
-    for c in reversed(cofactor.coefficients):
-        value = value @ generator + one.scale(c)
-    return value / scale
-
-
 @final
 class InvariantMetric:
     """An invariant metric of G/H; its tensors are numpy arrays of exact numbers, or of rational functions.
@@ -233,9 +252,15 @@ class InvariantMetric:
         dual, ring = self.metrics._dual, self.metrics.split.field
         if len(dual) < self.metrics.dimension:
             raise SingularError("every invariant form is degenerate, so G/H has no invariant metric")
-        numbers = [QQ.convert(3 * a * a + a + 1) for a in range(len(self.field.variables))]
-        values = [p.numerator(*numbers) for p in self.parameters]  # the parameters are polynomials
-        point = sum((f.scale(x) for x, f in zip(values, self.metrics.basis, strict=True)), ring.zeros(d, d))
+        rng = random.Random(2)
+        for _ in range(12):
+            numbers = [QQ.convert(rng.randint(1, 1000)) for _ in self.field.variables]
+            values = [p.numerator(*numbers) for p in self.parameters]  # the parameters are polynomials
+            point = sum((f.scale(x) for x, f in zip(values, self.metrics.basis, strict=True)), ring.zeros(d, d))
+            if point.rank() == d:
+                break
+        else:
+            raise SingularError("no metric with these parameters was found that is not degenerate")
         columns = ring.stack_rows([(point @ f).reshape(1, d * d) for f in dual], d * d)
         places = columns.echelon()[1]
         table = [(self._matrix @ np.asarray(f)).reshape(-1)[places] for f in dual]

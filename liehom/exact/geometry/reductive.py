@@ -18,9 +18,11 @@ from liehom.base.budget import within
 from liehom.base.errors import InputError, NotReductiveError, SingularError, UndecidedError, displayed
 from liehom.exact.representations.core.pair import Pair
 from liehom.exact.representations.invariants.intertwiners import intertwiners
+from liehom.exact.representations.invariants.irreducibility import evaluated
 from liehom.exact.scalars.exact_field import ExactField, ExactMatrix, as_exact
 from liehom.exact.scalars.field import Scalar
 from liehom.exact.scalars.function_field import RationalFunction
+from liehom.exact.scalars.polynomial import Polynomial
 from liehom.exact.scalars.subspaces import Subspace
 
 ObjectArray: TypeAlias = npt.NDArray[np.object_]
@@ -197,3 +199,12 @@ def has_solution(field: ExactField, right: ObjectArray, columns: list[ObjectArra
     size = right.size
     rows = [field.matrix([list(c.reshape(-1))], (1, size)) for c in (*columns, right)]
     return bool(field.stack_rows(rows, size).rank() == field.stack_rows(rows[:-1], size).rank())
+
+
+def kernel_projector(generator: ExactMatrix, polynomial: Polynomial, factor: Polynomial) -> ExactMatrix:
+    """The projector onto the kernel of a factor of the squarefree minimal polynomial at a matrix, on columns."""
+    if polynomial.degree == factor.degree:
+        return generator.field.identity(generator.nrows)
+    kernel, other = (evaluated(f, generator).null_space() for f in (factor, polynomial // factor))
+    basis = generator.field.stack_rows([kernel, other], generator.nrows)
+    return (basis.inverse().select(columns=range(kernel.nrows)) @ kernel).T

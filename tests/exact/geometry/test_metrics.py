@@ -1,6 +1,6 @@
 """Curvature of invariant metrics against closed formulas, identities of the curvature tensor, refusals."""
 
-from itertools import combinations
+from itertools import combinations, product
 
 import numpy as np
 import pytest
@@ -8,6 +8,7 @@ from hypothesis import given, settings, strategies as st
 
 import liehom as lh
 from liehom.exact.geometry.metrics import InvariantMetric
+from liehom.exact.scalars.function_field import FunctionField
 from tests.exact.geometry.spaces import aloff_wallach, product_of_spheres, su_flag
 
 # name, n, dimension of the holonomy algebra.
@@ -212,6 +213,35 @@ def test_parameters_are_rational_functions_that_specialize() -> None:
         for i, k in scalar.powers:
             below = below * symbolic.field.atoms[i](*map(lh.scalars.QQ.convert, values)) ** k
         assert scalar.numerator(*map(lh.scalars.QQ.convert, values)) / below == numbers.scalar()
+
+
+def test_signatures_of_a_diagonal_family_are_those_of_its_metrics() -> None:
+    metrics = su_flag(1, 1, 2).invariant_metrics()
+    assert metrics.diagonal
+    signs = product([1, -2], repeat=metrics.dimension)
+    assert {metrics(list(x)).signature()[:2] for x in signs} == set(metrics.signatures())
+    assert lh.pair("so(4)/so(3)").invariant_metrics().signatures() == ((0, 3), (3, 0))
+
+
+@pytest.mark.parametrize("name", ["SU(2)/0", "V_2(R^4)", "dS^3", "sp(2)/sp(1)"])
+def test_other_families_are_not_diagonal(name: str) -> None:
+    metrics = lh.pair(name).invariant_metrics()
+    assert not metrics.diagonal
+    with pytest.raises(lh.UndecidedError, match="not diagonal"):
+        metrics.signatures()
+
+
+def test_family_of_metrics_may_be_degenerate_at_some_points() -> None:
+    metrics = lh.pair("so(4)/so(2)+so(2)").invariant_metrics()
+    field = FunctionField(["a"])
+    (a,) = field.variables
+    for shift in (1, 2, 57):  # no one value of a tells whether the family is degenerate
+        scalar = InvariantMetric(metrics, (a, a - shift), field).scalar()
+        ratio = lh.QQ.convert("7/2")
+        at = scalar.numerator(ratio) / field.denominator(scalar.powers)(ratio)
+        assert at == metrics([ratio, ratio - shift]).scalar()
+    with pytest.raises(lh.SingularError, match="degenerate"):
+        InvariantMetric(metrics, (a, a - a), field)
 
 
 def test_holonomy_of_a_product_is_the_product() -> None:

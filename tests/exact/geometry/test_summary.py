@@ -71,3 +71,17 @@ def test_command_prints_the_facts() -> None:
     data = json.loads(liehom("geometry", "CP^2", "--json").stdout)
     assert (data["cohomology"], data["complex_structures"]) == ([1, 0, 1, 0, 1], 2)
     assert "is not reductive" in liehom("geometry", "sl(3)/P1").stdout
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("CP^2", "Einstein, Ric = 6 g, naturally reductive, holonomy so(3) + R"),
+        ("sl(3)/P1", "no: h has no invariant complement in g"),
+        ("so(12)/so(11)", "up to dim g/h = 8"),
+    ],
+)
+def test_page_of_a_pair_has_a_section_on_geometry(name: str, words: str) -> None:
+    page = lh.pair_page(lh.decide_fullness(lh.pair(name)))
+    section = page.partition('<section id="geometry">')[2].partition("</section>")[0]
+    assert words in section
