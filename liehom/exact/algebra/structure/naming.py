@@ -166,11 +166,16 @@ def _named(algebra: LieAlgebra) -> _Part:
         return _with_levi_factor(algebra)
     else:
         _undecided(algebra)
+    turn = _complex_structure(algebra) if n == 6 else None
     open_rows: set[Row] = set()
     for row, values, seeds, cosets in options:
         source = row.algebra(values, field)
         try:
-            images = find_isomorphism(source, algebra, seeds, cosets)
+            mine = _complex_structure(source) if n == 6 else None
+            if (mine is None) != (turn is None):
+                continue  # only one of them is an algebra over the complex numbers
+            both = (mine, turn) if mine is not None and turn is not None else None
+            images = find_isomorphism(source, algebra, seeds, cosets, both)
         except UndecidedError:
             open_rows.add(row)
             continue
@@ -203,6 +208,28 @@ def _require_real_summands(algebra: LieAlgebra) -> None:
         for f, _ in Polynomial(theta.field, theta.characteristic_coefficients()).factor():
             if f.degree > 1 and f.count_real_roots():
                 raise LargerFieldError(adjoin_root(f, 0)[0])
+
+
+def _complex_structure(algebra: LieAlgebra) -> ExactMatrix | None:
+    """A matrix J on rows with J^2 = -1 and [x J, y] = [x, y] J, if the centroid shows one.
+
+    It is unique up to its sign and automorphisms that the centroid provides.
+    """
+    for theta in algebra.centroid():
+        factors = Polynomial(theta.field, theta.characteristic_coefficients()).factor()
+        f = factors[0][0].monic()
+        if len(factors) == 1 and f.degree == 2 and not f.count_real_roots():
+            middle = -f.coefficients[1] / 2
+            square = f.coefficients[0] - middle * middle
+            roots = Polynomial(theta.field, [-square, 0, 1]).factor()
+            if len(roots) == 1:
+                raise LargerFieldError(adjoin_root(roots[0][0], 1)[0])
+            one = theta.field.identity(theta.nrows)
+            turn = (theta - one.scale(middle)).scale(theta.field.one / roots[0][0].monic().coefficients[0])
+            for _ in range(3):  # Newton's method for J^2 + 1 = 0, exact because the error is nilpotent
+                turn = turn - (turn @ turn + one) @ turn.inverse().scale(theta.field.one / 2)
+            return turn.T
+    return None
 
 
 Seeds = list[tuple[ExactMatrix, ExactMatrix]]
