@@ -29,6 +29,7 @@ from liehom.exact.scalars.polynomial import Polynomial
 from liehom.exact.scalars.subspaces import echelon_quotient
 
 MAX_SUBSPACES = 16
+MAX_DEGREE = 8  # of the number field of a map
 MAX_TERMS = 600  # of an equation
 MAX_DIVISOR = 24  # terms of a polynomial that is known not to vanish
 MAX_WORK = 15_000  # terms of the equations of all steps of one search
@@ -44,6 +45,13 @@ class LargerFieldError(Exception):
     def __init__(self, extension: Extension) -> None:
         super().__init__(extension.field.name)
         self.extension: Extension = extension
+
+    @classmethod
+    def of(cls, f: Polynomial, index: int = 0) -> LargerFieldError:
+        """The request for a real root of a polynomial; `UndecidedError` if the field would be too large."""
+        if (degree := f.field.degree * f.degree) > MAX_DEGREE:
+            raise UndecidedError(f"a map needs a field of degree {degree} over QQ or more; the limit is {MAX_DEGREE}")
+        return cls(adjoin_root(f, index)[0])
 
 
 # -- characteristic subspaces --------------------------------------------------------------------------------
@@ -302,7 +310,7 @@ class _Unknowns:
             if missing or self.proved:
                 break
         if missing:
-            raise LargerFieldError(adjoin_root(min(missing, key=lambda f: f.degree), 0)[0])
+            raise LargerFieldError.of(min(missing, key=lambda f: f.degree))
         if not self.proved:
             raise UndecidedError("the search for an isomorphism left out cases")
         return None
