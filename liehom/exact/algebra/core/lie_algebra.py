@@ -950,7 +950,7 @@ class LieAlgebra(Displayed, Immutable):
         ------
         UndecidedError
             If an ideal that is not a direct sum is not in the tables, which hold all real algebras of dimension at most
-            5 and all nilpotent ones of dimension 6 (`low_dimensional`), or if a map needs a field of degree above 24.
+            5 and all nilpotent ones of dimension 6 (`low_dimensional`), or if a map needs a field of degree above 8.
 
         Notes
         -----

@@ -29,8 +29,10 @@ from liehom.exact.scalars.polynomial import Polynomial
 from liehom.exact.scalars.subspaces import echelon_quotient
 
 MAX_SUBSPACES = 16
+MAX_DEGREE = 8  # of the number field of a map
 MAX_TERMS = 600  # of an equation
-MAX_WORK = 60_000  # terms of the equations of all steps of one search
+MAX_DIVISOR = 24  # terms of a polynomial that is known not to vanish
+MAX_WORK = 15_000  # terms of the equations of all steps of one search
 
 Monomial = tuple[int, ...]  # variables in increasing order, repeated by their exponents
 Terms = dict[Monomial, Scalar]
@@ -43,6 +45,13 @@ class LargerFieldError(Exception):
     def __init__(self, extension: Extension) -> None:
         super().__init__(extension.field.name)
         self.extension: Extension = extension
+
+    @classmethod
+    def of(cls, f: Polynomial, index: int = 0) -> LargerFieldError:
+        """The request for a real root of a polynomial; `UndecidedError` if the field would be too large."""
+        if (degree := f.field.degree * f.degree) > MAX_DEGREE:
+            raise UndecidedError(f"a map needs a field of degree {degree} over QQ or more; the limit is {MAX_DEGREE}")
+        return cls(adjoin_root(f, index)[0])
 
 
 # -- characteristic subspaces --------------------------------------------------------------------------------
@@ -105,10 +114,12 @@ def find_isomorphism(
     target: LieAlgebra,
     seeds: Sequence[tuple[ExactMatrix, ExactMatrix]] = (),
     cosets: Mapping[int, tuple[ExactMatrix, ExactMatrix]] | None = None,
+    intertwined: tuple[ExactMatrix, ExactMatrix] | None = None,
 ) -> ExactMatrix | None:
     """Rows f(e_i) of an isomorphism that maps seeds to seeds, or None if it is proved that there is none.
 
-    A pair (x, U) in `cosets` bounds f(e_i) to x + U. Raises `LargerFieldError` if a real root is missing, and
+    A pair (x, U) in `cosets` bounds f(e_i) to x + U. A pair (S, T) in `intertwined`, acting on rows, asks for
+    f(x S) = f(x) T. Raises `LargerFieldError` if a real root is missing, and
     `UndecidedError` if the search left out cases.
     """
     field, n = exact_field(source, "isomorphisms"), source.dimension
@@ -140,7 +151,16 @@ def find_isomorphism(
         else:
             independent[inside] = _span(block, unit)
             unknown.add_image(field.zeros(1, n), room, across, inside)
-    values = unknown.solve(_equations(source.table, table, unknown.images))
+    equations = _equations(source.table, table, unknown.images)
+    for i, image in enumerate(unknown.images if intertwined else ()):
+        left, right = intertwined[0], basis @ intertwined[1] @ inverse  # type: ignore[index]
+        for k in range(n):
+            linear: Terms = {}
+            for j in range(n):
+                _add(linear, unknown.images[j][k], left[i, j])
+                _add(linear, image[j], -right[j, k])
+            equations.append(linear)
+    values = unknown.solve(equations)
     return None if values is None else values @ basis
 
 
@@ -187,7 +207,7 @@ def _add(total: Terms, other: Terms, factor: Scalar) -> None:
     for monomial, c in other.items():
         value = total[monomial] + c * factor if monomial in total else c * factor
         if value == 0:
-            del total[monomial]
+            total.pop(monomial, None)
         else:
             total[monomial] = value
 
@@ -290,7 +310,7 @@ class _Unknowns:
             if missing or self.proved:
                 break
         if missing:
-            raise LargerFieldError(adjoin_root(min(missing, key=lambda f: f.degree), 0)[0])
+            raise LargerFieldError.of(min(missing, key=lambda f: f.degree))
         if not self.proved:
             raise UndecidedError("the search for an isomorphism left out cases")
         return None
@@ -333,7 +353,7 @@ class _Unknowns:
                 return False
             common = _content(unit)
             state.nonzero |= common.keys()
-            if len(unit) > 1:
+            if 1 < len(unit) <= MAX_DIVISOR:
                 units.append({tuple(sorted((Counter(m) - common).elements())): c for m, c in unit.items()})
         state.units = units
         kept: dict[frozenset[tuple[Monomial, Scalar]], Terms] = {}

@@ -30,12 +30,11 @@ from liehom.exact.algebra.structure.isomorphisms import (
     intersection,
 )
 from liehom.exact.scalars.exact_field import ExactField, ExactMatrix, as_exact
-from liehom.exact.scalars.extension import Extension, adjoin_root, real_factors, trivial_extension
+from liehom.exact.scalars.extension import Extension, real_factors, trivial_extension
 from liehom.exact.scalars.field import Scalar
 from liehom.exact.scalars.polynomial import Polynomial
 from liehom.exact.scalars.rational import QQ
 
-MAX_DEGREE = 24  # of the number field of a map
 MAX_SEARCHED = 8  # dimension of algebras without a name between which a map is sought
 SIGNS = (1, -1, 0)  # values of a parameter that the weights do not determine
 
@@ -124,9 +123,6 @@ def _identified(algebra: LieAlgebra) -> tuple[Identification, Extension, list[_P
             parts = _parts(larger)
         except LargerFieldError as error:
             up = up.then(error.extension)
-            if (degree := up.field.degree) > MAX_DEGREE:
-                message = f"a map needs a field of degree {degree} over QQ, more than {MAX_DEGREE}"
-                raise UndecidedError(message) from None
             continue
         field = up.field
         source = direct_sum(*(part.row.algebra(part.values, field) for part in parts)) if parts else algebra
@@ -166,11 +162,16 @@ def _named(algebra: LieAlgebra) -> _Part:
         return _with_levi_factor(algebra)
     else:
         _undecided(algebra)
+    turn = _complex_structure(algebra) if n == 6 else None
     open_rows: set[Row] = set()
     for row, values, seeds, cosets in options:
         source = row.algebra(values, field)
         try:
-            images = find_isomorphism(source, algebra, seeds, cosets)
+            mine = _complex_structure(source) if n == 6 else None
+            if (mine is None) != (turn is None):
+                continue  # only one of them is an algebra over the complex numbers
+            both = (mine, turn) if mine is not None and turn is not None else None
+            images = find_isomorphism(source, algebra, seeds, cosets, both)
         except UndecidedError:
             open_rows.add(row)
             continue
@@ -202,7 +203,29 @@ def _require_real_summands(algebra: LieAlgebra) -> None:
     for theta in algebra.centroid()[:4] if algebra.dimension > 3 else ():
         for f, _ in Polynomial(theta.field, theta.characteristic_coefficients()).factor():
             if f.degree > 1 and f.count_real_roots():
-                raise LargerFieldError(adjoin_root(f, 0)[0])
+                raise LargerFieldError.of(f)
+
+
+def _complex_structure(algebra: LieAlgebra) -> ExactMatrix | None:
+    """A matrix J on rows with J^2 = -1 and [x J, y] = [x, y] J, if the centroid shows one.
+
+    It is unique up to its sign and automorphisms that the centroid provides.
+    """
+    for theta in algebra.centroid():
+        factors = Polynomial(theta.field, theta.characteristic_coefficients()).factor()
+        f = factors[0][0].monic()
+        if len(factors) == 1 and f.degree == 2 and not f.count_real_roots():
+            middle = -f.coefficients[1] / 2
+            square = f.coefficients[0] - middle * middle
+            roots = Polynomial(theta.field, [-square, 0, 1]).factor()
+            if len(roots) == 1:
+                raise LargerFieldError.of(roots[0][0], 1)
+            one = theta.field.identity(theta.nrows)
+            turn = (theta - one.scale(middle)).scale(theta.field.one / roots[0][0].monic().coefficients[0])
+            for _ in range(3):  # Newton's method for J^2 + 1 = 0, exact because the error is nilpotent
+                turn = turn - (turn @ turn + one) @ turn.inverse().scale(theta.field.one / 2)
+            return turn.T
+    return None
 
 
 Seeds = list[tuple[ExactMatrix, ExactMatrix]]
@@ -282,7 +305,11 @@ def _weights(algebra: LieAlgebra) -> _Weights:
 def _space(action: ExactMatrix, adjoint: list[ExactMatrix], f: Polynomial, m: int, one: ExactMatrix) -> _Space:
     """The weight space of an irreducible factor of multiplicity m; `LargerFieldError` if it does not split."""
     field = one.field
-    if f.degree > 2 or (f.degree == 2 and f.count_real_roots()):
+    if f.degree > 1 and f.count_real_roots():
+        raise LargerFieldError.of(f)
+    if f.degree > 2:
+        if field.degree > 1:
+            raise UndecidedError(f"complex weights of degree {f.degree} over {field.name} are not separated")
         raise LargerFieldError(real_factors(f)[0].extension)
     f = f.monic()
     shift = -f.coefficients[f.degree - 1] / f.degree
@@ -292,7 +319,7 @@ def _space(action: ExactMatrix, adjoint: list[ExactMatrix], f: Polynomial, m: in
         square = f.coefficients[0] - shift * shift
         pure = Polynomial(field, [-square, 0, 1])
         if len(pure.factor()) == 1:
-            raise LargerFieldError(adjoin_root(pure, 1)[0])
+            raise LargerFieldError.of(pure, 1)
         height = abs(pure.factor()[0][0].monic().coefficients[0])
         centred = centred @ centred + one.scale(square)
     power = centred
@@ -501,7 +528,7 @@ def _of_square_length(form: ExactMatrix) -> tuple[ExactMatrix, Scalar]:
             if roots:
                 return x, abs(roots[0])
             positive.append(f)
-    raise LargerFieldError(adjoin_root(positive[0], 1)[0])
+    raise LargerFieldError.of(positive[0], 1)
 
 
 # -- invariants and isomorphisms -----------------------------------------------------------------------------
@@ -577,7 +604,7 @@ def isomorphism(first: LieAlgebra, second: LieAlgebra) -> Homomorphism | None:
 def _searched(first: LieAlgebra, second: LieAlgebra) -> Homomorphism | None:
     """An isomorphism of algebras that have no name here; `UndecidedError` if none was found."""
     up = trivial_extension(exact_field(first, "isomorphisms"))
-    while first.dimension <= MAX_SEARCHED and up.field.degree <= MAX_DEGREE and not first.is_semisimple():
+    while first.dimension <= MAX_SEARCHED and not first.is_semisimple():
         source, target = over_extension(first, up), over_extension(second, up)
         try:
             basis, seeds, cosets = _with_simple_levi_factors(source, target)
