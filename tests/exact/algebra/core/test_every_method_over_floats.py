@@ -85,10 +85,20 @@ ANSWERED: dict[str, Question] = {
 }
 OF_EXACT_FIELDS = (
     *("cartan_subalgebra", "centroid", "direct_sum_decomposition", "is_simple", "levi_decomposition", "nilradical"),
-    *("rank", "real_form", "real_forms", "real_rank", "restricted_roots", "root_space_decomposition", "root_system"),
+    *(
+        "index",
+        "rank",
+        "real_form",
+        "real_forms",
+        "real_rank",
+        "restricted_roots",
+        "root_space_decomposition",
+        "root_system",
+    ),
     *("semisimple_type", "simple_ideals"),
 )
 REFUSED: dict[str, Question] = {
+    "casimirs": lambda g: g.casimirs(2),
     "is_isomorphic": lambda g: g.is_isomorphic(g),
     "parabolic_subalgebra": lambda g: g.parabolic_subalgebra([0]),
     **{name: methodcaller(name) for name in OF_EXACT_FIELDS},
