@@ -35,7 +35,7 @@ ORDER: dict[str, list[str]] = {
         "liehom.exact.algebra.linear": "complex_matrices generated_span closure linear_bases named_matrices",
         "liehom.exact.algebra.roots": "root_system diagrams chevalley real_form real_form_involutions",
         "liehom.exact.algebra.structure": (
-            "centroid cohomology derivations ideals levi root_spaces isomorphisms naming identification"
+            "centroid casimirs cohomology derivations ideals levi root_spaces isomorphisms naming identification"
         ),
         "liehom.exact.catalog": "names algebras pairs",
         "liehom.exact.fullness": (
@@ -48,13 +48,16 @@ ORDER: dict[str, list[str]] = {
         "liehom.exact.orbits": "conjugacy range cone types strata",
         "liehom.exact.pauli": "words span simple_ideals dynamical",
         "liehom.exact.representations": "invariants core rationalization highest_weight constructions analysis",
-        "liehom.exact.representations.analysis": "submodules isotypic decomposition symbolic weight_multiplicities",
+        "liehom.exact.representations.analysis": (
+            "submodules isotypic decomposition symbolic weight_multiplicities polynomial_invariants"
+        ),
         "liehom.exact.representations.core": "coordinates pair representation elements",
         "liehom.exact.representations.highest_weight": "weights characters highest_weight real_modules",
         "liehom.exact.representations.invariants": "intertwiners irreducibility representation_identity",
         "liehom.exact.scalars": (
             "field grammar integer_matrices exact_field rational function_field polynomial modular number_fields "
-            "floating complex_parts polynomial_matrix roots extension joint_spectrum sparse subspaces lattices"
+            "floating complex_parts polynomial_matrix roots extension joint_spectrum sparse "
+            "subspaces lattices"
         ),
         "liehom.flow": (
             "door tracing series action steps run methods engines propagation convergence bodies spins geodesics"

@@ -71,6 +71,7 @@ from liehom.exact.algebra.roots.root_system import (
     dynkin_diagram as dynkin_diagram,
     root_system as root_system,
 )
+from liehom.exact.algebra.structure.casimirs import Casimirs as Casimirs
 from liehom.exact.algebra.structure.cohomology import Cohomology as Cohomology
 from liehom.exact.algebra.structure.derivations import Derivations as Derivations
 from liehom.exact.algebra.structure.ideals import Place as Place

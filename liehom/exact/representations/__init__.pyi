@@ -4,6 +4,7 @@ from liehom.exact.representations.analysis.decomposition import (
     HermitianForms as HermitianForms,
     IsotypicComponent as IsotypicComponent,
 )
+from liehom.exact.representations.analysis.polynomial_invariants import HilbertSeries as HilbertSeries
 from liehom.exact.representations.analysis.submodules import MaximalSubmodules as MaximalSubmodules
 from liehom.exact.representations.analysis.symbolic import SymbolicIsotropy as SymbolicIsotropy
 from liehom.exact.representations.analysis.weight_multiplicities import Charge as Charge, ChargedWeight as ChargedWeight

@@ -1,4 +1,4 @@
-"""Matrices of polynomials and of linear forms: generic rank, minors, and where the rank drops.
+"""Matrices of polynomials: generic rank, minors, and where the rank drops; polynomials that linear fields annihilate.
 
 Minors are computed without division, by expansion along columns, one subset of rows after another. M(x) = x_0 M_0 + ...
 + x_{m-1} M_{m-1} is a matrix of linear forms over QQ or a real number field, whose generator is one more variable
@@ -12,18 +12,20 @@ import random
 from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from functools import cached_property
-from itertools import combinations, combinations_with_replacement
-from math import comb, prod
-from typing import NamedTuple, cast, final
+from itertools import combinations, combinations_with_replacement, product
+from math import comb, gcd, lcm, prod
+from operator import mul
+from typing import NamedTuple, TypeAlias, cast, final
 
 import flint
 
+from liehom.base.budget import within
 from liehom.base.errors import FieldError, InputError, InternalError, ShapeError
 from liehom.base.typing import Expression, ScalarLike
 from liehom.exact.scalars.exact_field import ExactField, ExactMatrix
 from liehom.exact.scalars.field import Scalar
 from liehom.exact.scalars.function_field import common_divisor, content
-from liehom.exact.scalars.modular import pivot_columns
+from liehom.exact.scalars.modular import null_rows, pivot_columns, rational_lifts, residue_matrix, row_basis
 from liehom.exact.scalars.polynomial import Polynomial, horner
 from liehom.exact.scalars.rational import QQ
 
@@ -608,3 +610,174 @@ def expression_of(polynomial: Poly, symbols: Sequence[Expression]) -> Expression
     if not symbols or not terms:
         return sympy.Add(*terms.values())
     return sympy.Poly.from_dict(terms, *symbols).as_expr()
+
+
+# Polynomials with integer coefficients that linear vector fields annihilate.
+# A monomial of degree d in x_0, ..., x_(n-1) is the sorted tuple of the indices of its factors. A matrix A acts as the
+# derivation with x_j -> sum_k A[j, k] x_k. Matrices that are diagonal give weights, and only monomials of weight 0 are
+# unknowns. The kernel of the others is computed modulo a prime, where it is at least as large, lifted to QQ,
+# and checked.
+
+Monomial: TypeAlias = tuple[int, ...]
+IntegerTerms: TypeAlias = dict[Monomial, int]
+"""A polynomial with integer coefficients, by monomials."""
+
+MAX_MULTIPLES = 800  # of the denominator, among which one without negative coefficients above is looked for
+LARGE_POINT = 1 << 40  # bound on the coordinates of a random point
+
+
+def invariant_polynomials(actions: Sequence[ExactMatrix], variables: int, degree: int) -> list[IntegerTerms]:
+    """A basis, over QQ, of the polynomials of a degree that all matrices (n, n) annihilate, primitive ones over Z."""
+    count = comb(variables + degree - 1, degree)
+    within("memory", 80 * count, f"the {count} monomials of degree {degree} need {{}} bytes")
+    images = [_images(a) for a in actions]
+    weights = [[dict(row).get(j, 0) for j, row in enumerate(image)] for image in images if _is_diagonal(image)]
+    candidates = combinations_with_replacement(range(variables), degree)
+    monomials = [m for m in candidates if all(sum(w[j] for j in m) == 0 for w in weights)]
+    equations = _equations([image for image in images if not _is_diagonal(image)], monomials)
+    basis = [terms for block in _blocks(len(monomials), equations) for terms in _kernel(*block)]
+    return [_primitive({monomials[i]: c for i, c in terms.items()}) for terms in basis]
+
+
+def _blocks(count: int, equations: list[dict[int, int]]) -> list[tuple[list[int], list[dict[int, int]]]]:
+    """The unknowns and equations of the finest decomposition of a linear system."""
+    parent = list(range(count))
+
+    def root(x: int) -> int:
+        while parent[x] != x:
+            parent[x] = parent[parent[x]]
+            x = parent[x]
+        return x
+
+    for equation in equations:
+        first, *others = equation
+        for x in others:
+            parent[root(x)] = root(first)
+    blocks: dict[int, tuple[list[int], list[dict[int, int]]]] = {}
+    for x in range(count):
+        blocks.setdefault(root(x), ([], []))[0].append(x)
+    for equation in equations:
+        blocks[root(next(iter(equation)))][1].append(equation)
+    return list(blocks.values())
+
+
+def _kernel(unknowns: list[int], equations: list[dict[int, int]]) -> list[dict[int, int]]:
+    """A basis of the solutions, each the integers by unknown that are not 0."""
+    n = len(unknowns)
+    within("memory", 16 * n * len(equations), f"{len(equations)} equations for {n} coefficients need {{}} bytes")
+
+    def modular(attempt: int) -> flint.nmod_mat:
+        p = QQ.residue(attempt)[0]
+        entries = (row.get(x, 0) % p for x in unknowns for row in equations)
+        return row_basis(null_rows(residue_matrix(n, len(equations), entries, p)))
+
+    for proposal in rational_lifts(modular, QQ):
+        entries = [int(x) for x in proposal.parts[0].entries()]
+        rows = (entries[i * n : (i + 1) * n] for i in range(proposal.nrows))
+        solutions = [{x: c for x, c in zip(unknowns, row, strict=True) if c} for row in rows]
+        # modulo a prime there are at least as many solutions
+        if all(sum(s.get(x, 0) * c for x, c in equation.items()) == 0 for s in solutions for equation in equations):
+            return solutions
+    raise InternalError("no small fractions solve the equations of invariant polynomials")
+
+
+def _images(action: ExactMatrix) -> list[list[tuple[int, int]]]:
+    """The images of the variables under the derivation, times a common denominator, as (variable, coefficient)."""
+    n, entries = action.ncols, action.parts[0].entries()
+    rows = (entries[j * n : (j + 1) * n] for j in range(n))
+    return [[(k, int(x)) for k, x in enumerate(row) if x] for row in rows]
+
+
+def _is_diagonal(image: list[list[tuple[int, int]]]) -> bool:
+    return all(k == j for j, row in enumerate(image) for k, _ in row)
+
+
+def _equations(images: list[list[list[tuple[int, int]]]], monomials: list[Monomial]) -> list[dict[int, int]]:
+    """The equations for the coefficients of the monomials, as {index of the monomial: coefficient}."""
+    rows: dict[tuple[int, Monomial], dict[int, int]] = {}
+    for a, image in enumerate(images):
+        for i, monomial in enumerate(monomials):
+            for t, j in enumerate(monomial):
+                for k, c in image[j]:
+                    row = rows.setdefault((a, tuple(sorted((*monomial[:t], k, *monomial[t + 1 :])))), {})
+                    row[i] = row.get(i, 0) + c
+    return list({tuple(row.items()): row for row in rows.values()}.values())
+
+
+def _primitive(terms: IntegerTerms) -> IntegerTerms:
+    """The multiple without a common factor whose first coefficient is positive."""
+    common = gcd(*terms.values())
+    common = -common if next(iter(terms.values())) < 0 else common
+    return {m: c // common for m, c in terms.items()}
+
+
+def expression_of_terms(terms: IntegerTerms, names: Sequence[str]) -> Expression:
+    """A polynomial as a sympy expression in symbols with these names."""
+    import sympy
+
+    symbols = [sympy.Symbol(name) for name in names]
+    return sympy.Add(*(c * sympy.Mul(*(symbols[j] for j in m)) for m, c in terms.items()))
+
+
+def independent(polynomials: Sequence[IntegerTerms], variables: int) -> list[int]:
+    """Indices of polynomials whose gradients are independent at a random point, each of the earlier ones."""
+    p = QQ.residue()[0]
+    rng = random.Random(variables)
+    point = [rng.randrange(1, LARGE_POINT) for _ in range(variables)]
+    rows = [[_derivative(terms, j, point) % p for j in range(variables)] for terms in polynomials]
+    chosen: list[int] = []
+    for i in range(len(rows)):
+        tried = [rows[x] for x in (*chosen, i)]
+        if residue_matrix(len(tried), variables, (x for row in tried for x in row), p).rank() == len(tried):
+            chosen.append(i)
+    return chosen
+
+
+def _derivative(terms: IntegerTerms, j: int, point: Sequence[int]) -> int:
+    """The value of the derivative by variable j at a point."""
+    total = 0
+    for monomial, c in terms.items():
+        if power := monomial.count(j):
+            total += c * power * prod(point[k] for k in monomial if k != j) * point[j] ** (power - 1)
+    return total
+
+
+# A power series of which enough coefficients are known as N(t) / D(t), where D is a product of factors 1 - t^d.
+
+
+def as_fraction(series: Sequence[int], orders: Mapping[int, int]) -> tuple[list[int], list[int]]:
+    """N, with no negative coefficients if possible, and the d of D, for H with H prod Phi_n^orders[n] a polynomial.
+
+    Phi_n are the cyclotomic polynomials. The degree of the polynomial is less than the number of known coefficients.
+    """
+    factors = {n: flint.fmpz_poly.cyclotomic(n) for n in orders}
+    whole = prod((factors[n] ** k for n, k in orders.items()), start=flint.fmpz_poly([1]))
+    shortest: tuple[list[int], list[int]] | None = None
+    top = (flint.fmpz_poly(list(series)) * whole).truncate(len(series))
+    left = dict(orders)
+    for n, phi in factors.items():
+        while left[n]:
+            quotient, rest = divmod(top, phi)
+            if not rest.is_zero():
+                break
+            top, left[n] = quotient, left[n] - 1
+    below = _degrees(left)
+    under = prod((factors[n] ** k for n, k in left.items()), start=flint.fmpz_poly([1]))
+    multiples = sorted(product((1, 2, 3), repeat=len(below)), key=lambda m: sum(map(mul, m, below)))
+    for factor in multiples[:MAX_MULTIPLES]:
+        degrees = sorted(map(mul, factor, below))
+        scaled = prod((1 - flint.fmpz_poly([0] * d + [1]) for d in degrees), start=top) // under
+        numerator = [int(c) * int(scaled[0]) for c in scaled.coeffs()]  # Phi_1 = t - 1 leaves the sign open; N(0) = 1
+        if min(numerator) >= 0:
+            return numerator, degrees
+        shortest = shortest or (numerator, degrees)
+    return shortest or ([1], [])
+
+
+def _degrees(orders: Mapping[int, int]) -> list[int]:
+    """Few numbers such that at least orders[n] of them are divisible by n, for each n."""
+    bins = [1] * max(orders.values(), default=0)
+    for n in sorted(orders, reverse=True):
+        bins.sort(key=lambda d: (lcm(d, n) - d, d))
+        bins[: orders[n]] = [lcm(d, n) for d in bins[: orders[n]]]
+    return sorted(bins)

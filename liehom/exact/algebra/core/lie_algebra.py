@@ -43,6 +43,7 @@ if TYPE_CHECKING:
     from liehom.exact.algebra.involutions.cartan_decomposition import CartanDecomposition
     from liehom.exact.algebra.roots.real_form import RealForm
     from liehom.exact.algebra.roots.root_system import RootSystem
+    from liehom.exact.algebra.structure.casimirs import Casimirs
     from liehom.exact.algebra.structure.cohomology import Cohomology
     from liehom.exact.algebra.structure.derivations import Derivations
     from liehom.exact.algebra.structure.levi import LeviDecomposition
@@ -797,6 +798,59 @@ class LieAlgebra(Displayed, Immutable):
         from liehom.exact.algebra.structure.cohomology import cohomology
 
         return cohomology(self, degree, matrices, size=size)
+
+    # -- invariants of the coadjoint action --------------------------------------------------------------
+    def index(self) -> int:
+        """The index: the least dimension of a stabilizer in the coadjoint action, an int.
+
+        It is the number of functionally independent invariants of this action, dim g minus the generic rank of the
+        matrix of brackets ([e_i, e_j]) (Beltrametti and Blasi, Phys. Lett. 20 (1966), 62-64).
+
+        Raises
+        ------
+        UndecidedError
+            Over float64, and if the rank at a random point is not proved to be the generic one: see `casimirs`.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> lh.sl(3).index(), lh.heisenberg(2).index(), lh.euclidean(2).index(), lh.algebra.affine(1).index()
+        (2, 1, 1, 0)
+        """
+        from liehom.exact.algebra.structure.casimirs import index
+
+        return index(self)
+
+    def casimirs(self, max_degree: int) -> Casimirs:
+        """Functionally independent polynomial invariants of the coadjoint action (generalized Casimir operators).
+
+        Parameters
+        ----------
+        max_degree : int
+            The largest degree of a polynomial.
+
+        Returns
+        -------
+        Casimirs
+            As many independent ones as exist up to this degree, those of low degree first. Rational and transcendental
+            invariants are not looked for: see ``.is_complete``.
+
+        Raises
+        ------
+        LimitError
+            If the monomials need too much memory.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> lh.euclidean(3).casimirs(2).degrees, lh.poincare(3).casimirs(4).degrees
+        ((2, 2), (2, 4))
+        >>> lh.LieAlgebra({("x", "y"): {"y": 1}, ("x", "z"): {"z": 2}}).casimirs(4).is_complete
+        False
+        """
+        from liehom.exact.algebra.structure.casimirs import casimirs
+
+        return casimirs(self, max_degree)
 
     # -- Cartan subalgebras and roots --------------------------------------------------------------------
     def cartan_subalgebra(self) -> Subalgebra:

@@ -14,7 +14,7 @@ from liehom.base.typing import Array, IntegerArray
 from liehom.exact.scalars.exact_field import ExactField, ExactMatrix
 from liehom.exact.scalars.field import Field, Matrix, Scalar
 from liehom.exact.scalars.floating import FloatField, FloatMatrix, norm_of
-from liehom.exact.scalars.sparse import SparseInteger
+from liehom.exact.scalars.sparse import SparseInteger, matrix_from_entries
 
 # The numbers of a bracket table as integers over a common denominator, and as dense exact matrices.
 
@@ -67,6 +67,8 @@ M = TypeVar("M", bound=Matrix)
 DENSE_DIMENSION = 64  # up to this dimension one dense product is faster than sparse ones, whatever the table
 LARGEST_DENSE = 160  # up to this dimension tables with more than n^2 entries are contracted densely
 EXACT_FLOATS = float(1 << 53)  # float64 holds all integers below this one
+FEW_ROWS = 3  # whose normalizer is found with unknown coefficients
+SPARSE = 3  # entries for each that is not 0, from which a matrix is made of these alone
 MOST_FLOATS = 1 << 22  # entries of the arrays of one contraction in float64
 
 
@@ -77,9 +79,8 @@ def exact_floats(matrix: ExactMatrix) -> Array | None:
 
 def _small_floats(values: Sequence[Any], shape: tuple[int, ...]) -> Array | None:
     """Integers as an array of float64, or None if one of them has more than 32 bits."""
-    array = np.array([int(x) for x in values] if values and not isinstance(values[0], int) else values, dtype=object)
     try:
-        narrow = array.astype(np.int64)
+        narrow = np.array([int(x) for x in values], dtype=np.int64)
     except OverflowError:
         return None
     return narrow.astype(np.float64).reshape(shape) if not len(values) or np.abs(narrow).max() < 1 << 32 else None
@@ -87,7 +88,11 @@ def _small_floats(values: Sequence[Any], shape: tuple[int, ...]) -> Array | None
 
 def _from_floats(field: ExactField, values: Array, shape: tuple[int, int], den: int) -> ExactMatrix:
     """The matrix over QQ with integers in float64 as numerators, row after row."""
-    return field.from_integers(values.astype(np.int64).ravel().tolist(), *shape, den)
+    flat = values.astype(np.int64).ravel()
+    places = np.flatnonzero(flat)
+    if SPARSE * len(places) < len(flat):
+        return matrix_from_entries(field, [dict(zip(places.tolist(), flat[places].tolist(), strict=True))], *shape, den)
+    return field.from_integers(flat.tolist(), *shape, den)
 
 
 def _largest(array: Array) -> float:
@@ -318,30 +323,19 @@ class StructureConstants(Immutable):
         """The matrix (n, n) of y -> [x, y] on columns, for a row matrix x of shape (1, n)."""
         n = self.dimension
         if isinstance(x, ExactMatrix) and (c := self.floats()) is not None and (w := exact_floats(x)) is not None:
-            if 2 * n * _largest(c) * _largest(w) < EXACT_FLOATS:
+            fits = 2 * n * _largest(c) * _largest(w) < EXACT_FLOATS
+            if fits:
                 return cast(M, _from_floats(x.field, self.adjoint_floats(w[0], c), (n, n), self.den * x.den))
         if self.is_dense():
             return (x @ cast(M, self.flat())).reshape(n, n).T
-        if self.field.degree > 1:
-            return self.contract(x, self.field.identity(n), self.field.identity(n))[0].T
-        return cast(M, self._adjoint_sparse(x))
+        return self.contract(x, self.field.identity(n), self.field.identity(n))[0].T
 
     def adjoint_floats(self, x: Array, values: Array) -> Array:
-        """The matrix (n, n) of y -> [x, y] on columns in float64, for x of shape (n,) and other entries of the table."""
+        """The matrix (n, n) of y -> [x, y] on columns in float64, for x (n,) and entries of the table."""
         n = self.dimension
         index = np.concatenate([self.k * n + self.j, self.k * n + self.i])
-        return np.bincount(index, np.concatenate([x[self.i] * values, -x[self.j] * values]), n * n).reshape(n, n)
-
-    def _adjoint_sparse(self, x: Any) -> Any:
-        n, weights = self.dimension, [int(w) for w in x.parts[0].entries()]
-        support = [i for i, w in enumerate(weights) if w]
-        chosen = np.flatnonzero(np.isin(self.i, support) | np.isin(self.j, support))
-        out, values = [0] * (n * n), self.parts[0]
-        indices = (a.tolist() for a in (chosen, self.i[chosen], self.j[chosen], self.k[chosen]))
-        for t, i, j, k in zip(*indices, strict=True):
-            out[k * n + j] += weights[i] * values[t]
-            out[k * n + i] -= weights[j] * values[t]
-        return exactly(self.field).from_integers(out, n, n, self.den * x.den)
+        weights = np.concatenate([x[self.i] * values, -x[self.j] * values])
+        return np.bincount(index, weights, n * n).astype(np.float64).reshape(n, n)
 
     def contract_floats(self, left: Matrix, right: Matrix, out: Matrix) -> Array | None:
         """The numerators of `contract` in float64, shape (p, q, r), or None if they may not be exact, or too many."""
@@ -357,7 +351,10 @@ class StructureConstants(Immutable):
             return None
         x, y, z = factors
         sums = [1.0 if f is None else float(np.abs(f).sum(axis=1).max()) for f in (x, y)]
-        if n * _largest(c) * (1.0 if z is None else _largest(z)) * sums[0] * sums[1] * (2 * n if few else 1) >= EXACT_FLOATS:
+        if (
+            n * _largest(c) * (1.0 if z is None else _largest(z)) * sums[0] * sums[1] * (2 * n if few else 1)
+            >= EXACT_FLOATS
+        ):
             return None
         if few and x is not None:
             array = np.stack([self.adjoint_floats(row, c).T for row in x])
@@ -443,7 +440,7 @@ class StructureConstants(Immutable):
         return self.field.stack_rows(self.contract(left, right, one), self.dimension)
 
     def bracket_columns(self, left: M, out: M) -> M:
-        """The matrix (n, p * r) of x -> [left_a, x] @ out for all a, acting on rows x; columns that are 0 may be left out."""
+        """The matrix (n, p * r) of x -> [left_a, x] @ out for all a, on rows x; columns that are 0 may be left out."""
         n, p, one = self.dimension, left.nrows, cast(M, self.field.identity(self.dimension))
         if isinstance(left, FloatMatrix) and p and n and out.ncols:
             return cast(M, self._contract_floats(left, one, out).regroup(p, n, out.ncols))
@@ -453,6 +450,18 @@ class StructureConstants(Immutable):
             return cast(M, _from_floats(left.field, wide, wide.shape, self.den * left.den * cast(ExactMatrix, out).den))
         blocks = self.contract(left, one, out)
         return self.field.stack_columns(blocks, n) if blocks else self.field.zeros(n, 0)
+
+    def normalizing_columns(self, rows: ExactMatrix) -> ExactMatrix | None:
+        """The equations [r_i, x] = sum_j c_ij r_j for few rows r_i, on rows (c, x); None if they are many or large."""
+        n, k, one = self.dimension, rows.nrows, exactly(self.field).identity(self.dimension)
+        brackets = None if k > FEW_ROWS else self.contract_floats(rows, one, one)
+        values = None if brackets is None else exact_floats(rows)
+        if brackets is None or values is None:
+            return None
+        # the unknown c_ij come first, since x determines them; their scale and sign do not matter
+        wide = np.vstack([np.kron(np.eye(k), values), brackets.transpose(1, 0, 2).reshape(n, k * n)])
+        wide = wide[:, wide.any(axis=0)]
+        return _from_floats(rows.field, wide, wide.shape, 1)
 
     def first_nonzero(self, left: Matrix, right: Matrix, out: Matrix) -> tuple[int, int] | None:
         """The first (a, b) with [left_a, right_b] @ out not zero, or None, which proves that all vanish.
@@ -466,7 +475,7 @@ class StructureConstants(Immutable):
             return None if largest is None else divmod(largest, right.nrows)
         if (floats := self.contract_floats(left, right, out)) is not None:
             nonzero = np.flatnonzero(floats.any(axis=2))
-            return (*map(int, divmod(int(nonzero[0]), right.nrows)),) if len(nonzero) else None
+            return divmod(int(nonzero[0]), right.nrows) if len(nonzero) else None
         if self.is_dense() or self.field.degree > 1:
             rows = enumerate(block.first_nonzero_row() for block in self.contract(left, right, out))
             return next(((a, b) for a, b in rows if b is not None), None)

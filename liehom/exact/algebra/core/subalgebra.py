@@ -363,7 +363,9 @@ def _samples(rows: M) -> M:
     """`SAMPLES` random combinations of rows, as rows."""
     rng = random.Random(rows.nrows)
     field: Any = rows.field
-    return cast(M, field.from_integers([rng.randint(-9, 9) for _ in range(SAMPLES * rows.nrows)], SAMPLES, rows.nrows) @ rows)
+    return cast(
+        M, field.from_integers([rng.randint(-9, 9) for _ in range(SAMPLES * rows.nrows)], SAMPLES, rows.nrows) @ rows
+    )
 
 
 def generated(algebra: LieAlgebra, rows: Subalgebra | RowsLike, *, ideal: bool = False) -> Subalgebra:
@@ -398,8 +400,11 @@ def _bracketed_into(algebra: LieAlgebra, rows: Matrix, projection: Matrix, quest
 
 def normalizer(subalgebra: Subalgebra) -> Subalgebra:
     """Implements `LieAlgebra.normalizer`."""
-    rows, projection = subalgebra._rows(), subalgebra._projection()
-    return _bracketed_into(subalgebra.algebra, rows, projection, "the dimension of a normalizer")  # closed by Jacobi
+    algebra, rows = subalgebra.algebra, subalgebra._rows()
+    if isinstance(rows, ExactMatrix) and (conditions := algebra.table.normalizing_columns(rows)) is not None:
+        solutions = conditions.left_null_space().select(columns=range(rows.nrows**2, conditions.nrows))
+        return Subalgebra(algebra, solutions, check=False)  # closed by the Jacobi identity
+    return _bracketed_into(algebra, rows, subalgebra._projection(), "the dimension of a normalizer")
 
 
 def upper_central_series(algebra: LieAlgebra) -> list[Subalgebra]:

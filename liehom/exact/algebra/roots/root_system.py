@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import lru_cache
@@ -118,32 +118,37 @@ def join_types(names: Iterable[str]) -> str:
 
 def isomorphisms(first: Sequence[Sequence[int]], second: Sequence[Sequence[int]]) -> list[tuple[int, ...]]:
     """The sorted isomorphisms of two Dynkin diagrams: tuples p with second[p[i]][p[j]] = first[i][j]."""
-    return sorted(_isomorphisms(dynkin_diagram(first), dynkin_diagram(second)))
+    n, found = len(first), list[tuple[int, ...]]([()] if len(first) == len(second) else [])
+    kinds = [[sorted(zip(m[i], (row[i] for row in m), strict=True)) for i in range(len(m))] for m in (first, second)]
+    for i in range(n):  # tuples of the images of the nodes before i
+        found = [
+            (*p, j)
+            for p in found
+            for j in range(n)
+            if kinds[0][i] == kinds[1][j]
+            and j not in p
+            and all(second[x][j] == first[k][i] and second[j][x] == first[i][k] for k, x in enumerate(p))
+        ]
+    return found
 
 
 @lru_cache(maxsize=256)
 def _identified(cartan: CartanMatrix) -> tuple[tuple[str, tuple[int, ...]], ...]:
-    import networkx
-
-    diagram = dynkin_diagram(cartan)
-    components = []
-    for nodes in networkx.weakly_connected_components(diagram):
-        component = diagram.subgraph(sorted(nodes))
-        orders = ((name, list(_isomorphisms(dynkin_diagram(name), component))) for name in _candidates(len(nodes)))
+    components, left = [], set(range(len(cartan)))
+    while left:
+        nodes = [left.pop()]
+        for i in nodes:  # which grows
+            joined = {j for j in left if cartan[i][j]}
+            left -= joined
+            nodes += joined
+        nodes.sort()
+        block = [[cartan[i][j] for j in nodes] for i in nodes]
+        orders = ((name, isomorphisms(cartan_matrix(name), block)) for name in _candidates(len(nodes)))
         name, isomorphic = next((pair for pair in orders if pair[1]), ("", []))
         if not name:
-            raise InputError(f"the nodes {sorted(nodes)} do not form a Dynkin diagram of finite type: {cartan}")
-        components.append((name, min(isomorphic)))
+            raise InputError(f"the nodes {nodes} do not form a Dynkin diagram of finite type: {cartan}")
+        components.append((name, tuple(nodes[i] for i in isomorphic[0])))
     return tuple(sorted(components, key=lambda pair: (pair[0][0], int(pair[0][1:]), pair[1])))
-
-
-def _isomorphisms(first: networkx.DiGraph, second: networkx.DiGraph) -> Iterator[tuple[int, ...]]:
-    """The isomorphisms of two weighted graphs, as tuples of the images of the nodes 0, 1, ... of the first."""
-    from networkx.algorithms.isomorphism import DiGraphMatcher, numerical_edge_match
-
-    matcher = DiGraphMatcher(first, second, edge_match=numerical_edge_match("entry", 1))
-    for mapping in matcher.isomorphisms_iter():
-        yield tuple(mapping[i] for i in range(len(first)))
 
 
 def _candidates(rank: int) -> list[str]:

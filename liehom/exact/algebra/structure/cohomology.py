@@ -90,6 +90,8 @@ class CochainComplex:
         tables, den = self.tables(degree)
         if isinstance(field, ExactField):
             return block_of(field, tables, den, range(shape[0]), range(shape[1]))
+        if not isinstance(field, FloatField):
+            raise InputError(f"cochains over {field} are not supported")
         dense = np.zeros(shape)
         for place, value in tables[0].items():
             dense[place] = value
@@ -475,7 +477,9 @@ class _Solver:
             if bounding < self.rank(degree - 1):
                 continue
             chosen = zip(blocks, maps, pivots, strict=True)
-            cocycles = [(b, _cocycles(after, *own)) for b, (_, after), own in chosen if sum(map(len, own)) < len(b.middle)]
+            cocycles = [
+                (b, _cocycles(after, *own)) for b, (_, after), own in chosen if sum(map(len, own)) < len(b.middle)
+            ]
             if all(rows is not None for _, rows in cocycles):
                 return _placed([(b.middle, rows) for b, rows in cocycles if rows is not None], field, length)
         raise InternalError(f"no prime was usable for the cohomology of {self.cochains.algebra!r} in degree {degree}")
@@ -487,7 +491,7 @@ def _pivots(matrix: ExactMatrix, attempt: int) -> list[int]:
 
 
 def _cocycles(after: ExactMatrix, bounding: list[int], needed: list[int]) -> ExactMatrix | None:
-    """The cocycles that are 0 at the indices `bounding`, as rows, from the `needed` equations; None if these miss one."""
+    """The cocycles that are 0 at the indices `bounding`, as rows, from `needed` equations; None if these miss one."""
     field, count = after.field, after.nrows
     kept = sorted(set(range(count)) - set(bounding))
     solved = after.select(kept, needed).left_null_space() if needed else field.identity(len(kept))
@@ -505,6 +509,7 @@ def _placed(parts: list[tuple[list[int], ExactMatrix]], field: ExactField, lengt
             entries.append((max(c for part in own for c in part), own))
     entries.sort(key=itemgetter(0))
     tables = [
-        {r * length + c: x for r, (_, own) in enumerate(entries) for c, x in own[s].items()} for s in range(field.degree)
+        {r * length + c: x for r, (_, own) in enumerate(entries) for c, x in own[s].items()}
+        for s in range(field.degree)
     ]
     return matrix_from_entries(field, tables, len(entries), length, den)

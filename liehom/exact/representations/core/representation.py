@@ -53,6 +53,7 @@ from liehom.exact.scalars.subspaces import Subspace
 if TYPE_CHECKING:
     from liehom.exact.representations.analysis.decomposition import Decomposition, HermitianForms
     from liehom.exact.representations.analysis.isotypic import CommutantType
+    from liehom.exact.representations.analysis.polynomial_invariants import HilbertSeries
     from liehom.exact.representations.analysis.submodules import MaximalSubmodules
     from liehom.exact.representations.analysis.symbolic import SymbolicIsotropy
 
@@ -663,6 +664,56 @@ class Representation(Displayed, Immutable):
         1
         """
         return invariant_vectors(self._generating(), self.size, self.field)
+
+    def invariants(self, degree: int) -> list[Expression]:
+        """A basis of the homogeneous invariant polynomials of a degree, sympy expressions in x0, x1, ...
+
+        Parameters
+        ----------
+        degree : int
+            The degree, at least 1.
+
+        Raises
+        ------
+        LimitError
+            If the monomials of this degree need too much memory.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> lh.defining(lh.so(2, 1)).invariants(2)
+        [x0**2 + x1**2 - x2**2]
+        >>> len(lh.adjoint(lh.sl(3)).invariants(6))
+        2
+        """
+        from liehom.exact.representations.analysis.polynomial_invariants import invariants
+
+        return invariants(self._exact(), degree)
+
+    def hilbert_series(self) -> HilbertSeries:
+        """The Hilbert series (Molien series) of the ring of invariant polynomials, as a rational function.
+
+        Raises
+        ------
+        InputError, NotCompletelyReducibleError
+            If the algebra is not reductive, the charges of its centre are not rational, or the weights are too many.
+
+        Notes
+        -----
+        The coefficients are those of Weyl's integral formula. As many are computed as determine the rational function:
+        its poles are roots of unity of orders that the weights bound, their orders as poles are bounded by the
+        dimension of an orbit, and its degree is at most 0 (Kempf, Michigan Math. J. 26 (1979), 19-32).
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> cubics = lh.highest_weight_module("A1", [3]).representation
+        >>> cubics.hilbert_series(), lh.defining(lh.so(5)).hilbert_series().degrees
+        (1/(1 - t^4), (2,))
+        """
+        from liehom.exact.representations.analysis.polynomial_invariants import hilbert_series
+
+        return hilbert_series(self._exact())
 
     # -- irreducible parts -------------------------------------------------------------------------------
     def is_irreducible(self) -> bool:

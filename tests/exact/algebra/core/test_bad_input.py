@@ -332,6 +332,7 @@ def test_answers_in_dimension_zero() -> None:
     assert [s.dimension for s in g.derived_series()] == [s.dimension for s in g.lower_central_series()] == [0]
     assert g.center().dimension == g.derivations().dimension == 0
     assert [g.cohomology(k).dimension for k in range(3)] == [1, 0, 0]
+    assert g.index() == len(g.casimirs(2)) == 0
     assert g.subalgebra([]) == g.center()
     assert [] in g.center()
     assert g.center().quotient_algebra() == g.center().as_algebra() == g

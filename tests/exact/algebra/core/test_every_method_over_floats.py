@@ -85,10 +85,20 @@ ANSWERED: dict[str, Question] = {
 }
 OF_EXACT_FIELDS = (
     *("cartan_subalgebra", "centroid", "direct_sum_decomposition", "is_simple", "levi_decomposition", "nilradical"),
-    *("rank", "real_form", "real_forms", "real_rank", "restricted_roots", "root_space_decomposition", "root_system"),
+    *(
+        "index",
+        "rank",
+        "real_form",
+        "real_forms",
+        "real_rank",
+        "restricted_roots",
+        "root_space_decomposition",
+        "root_system",
+    ),
     *("semisimple_type", "simple_ideals"),
 )
 REFUSED: dict[str, Question] = {
+    "casimirs": lambda g: g.casimirs(2),
     **{name: methodcaller(name, lh.so(3)) for name in ("differing_invariant", "is_isomorphic", "isomorphism")},
     "identify": lambda g: lh.low_dimensional(3, 6).over(g.field).identify(),
     "parabolic_subalgebra": lambda g: g.parabolic_subalgebra([0]),

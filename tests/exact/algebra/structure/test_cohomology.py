@@ -275,9 +275,7 @@ def test_representatives_of_blocks_are_those_of_one_block() -> None:
     g = lh.algebra.filiform(5)
     h = g.change_of_basis([[1, 2, 0, 1, 0], [0, 1, 0, 0, 3], [0, 0, 2, 1, 0], [0, 1, 0, 1, 0], [0, 0, 0, 0, 1]])
     for k in range(4):
-        assert (
-            cohomology(g, k, lh.adjoint(g).matrices).dimension == cohomology(h, k, lh.adjoint(h).matrices).dimension
-        )
+        assert cohomology(g, k, lh.adjoint(g).matrices).dimension == cohomology(h, k, lh.adjoint(h).matrices).dimension
 
 
 def test_invalid_modules_and_degrees_raise_errors() -> None:

@@ -52,6 +52,8 @@ REFUSED: dict[str, Callable[[lh.Representation], Any]] = {
     **{name: methodcaller(name) for name in ALONE},
     "symbolic_isotropy": lambda rho: rho.symbolic_isotropy([1, 2, 3]),
     "hermitian_forms": lambda rho: ON_C2.over(rho.field).hermitian_forms(),
+    "hilbert_series": lambda rho: rho.hilbert_series(),
+    "invariants": lambda rho: rho.invariants(2),
     "intertwiners": lambda rho: rho.intertwiners(rho),
     "equivalence": lambda rho: rho.equivalence(rho),
     "is_equivalent": lambda rho: rho.is_equivalent(rho),
