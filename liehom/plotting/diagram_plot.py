@@ -64,7 +64,7 @@ def plot_dynkin(
         Axes in the plane; by default new ones.
     labels : sequence, optional
         What to write at the nodes: coefficients of a highest weight or of the highest root. By default the numbers of
-        the simple roots.
+        the simple roots, from 1 as in Bourbaki.
     path : path, optional
         A file to write the picture to.
 
@@ -90,7 +90,7 @@ def plot_dynkin(
     >>> ax = lh.plotting.plot_dynkin("E8", labels=lh.root_system("E8").highest_roots[0])  # doctest: +SKIP
     """
     cartan = cartan_matrix(kind)
-    names = list(range(len(cartan))) if labels is None else list(labels)
+    names = list(range(1, len(cartan) + 1)) if labels is None else list(labels)
     if len(names) != len(cartan):
         raise ShapeError(f"{kind} has {len(cartan)} nodes, got {len(names)} labels")
     with style_unless(ax):
@@ -307,7 +307,7 @@ def _draw_diagram(
     for i, j in arrows:
         _draw_arrow(ax, places, i, j, bool(cartan[i][j]))
     size = float(np.clip(20 * unit, 4, 9))
-    for i, label in enumerate(range(len(places)) if labels is None else labels):
+    for i, label in enumerate(range(1, len(places) + 1) if labels is None else labels):
         # no label towards bonds, arrows, and the other line of a folded diagram
         facing = (places[:, 0] == places[i, 0]) & (abs(places[:, 1] - places[i, 1]) <= 1)
         joined = [(i, j) in arrows or (j, i) in arrows or cartan[i][j] != 0 for j in range(len(places))]
@@ -470,7 +470,7 @@ def plot_root_system(
                 _plot(ax, part, marker=MARKERS[k], linestyle="", color=colours[k], alpha=alpha, label=text, zorder=3)
         gap = 0.16 * float(np.sqrt(norms.max()))
         for node, root in enumerate(_padded(simple)):
-            _write(ax, _beside(root, gap), f"$\\alpha_{node}$")
+            _write(ax, _beside(root, gap), f"$\\alpha_{node + 1}$")
         _finish(ax, _padded(system.root_matrix() @ simple), f"{system.type}: {system.number_of_roots} roots")
     return written(ax, path)
 

@@ -269,13 +269,13 @@ def plot_weyl_chamber(kind: str, ax: Axes | None = None, *, path: str | os.PathL
         for root in roots:
             ax.annotate("", root, (0, 0), arrowprops={"arrowstyle": "-|>", "color": GREY, "linewidth": 1.2})
         for node, root in enumerate(simple):
-            ax.annotate(f"$\\alpha_{node}$", 1.13 * root, ha="center", va="center")
+            ax.annotate(f"$\\alpha_{node + 1}$", 1.13 * root, ha="center", va="center")
         corner = edges.sum(axis=0) * 0.62
         ax.fill(*np.array([(0, 0), edges[0], edges[1]]).T, color=colours[0], alpha=0.15, linewidth=0)
         ax.plot([], [], color=colours[0], alpha=0.4, linewidth=6, label=f"inside: {_structure(kind, ())}")
         for node in (0, 1):
             other = 1 - node  # the wall on which this simple root vanishes is the edge dual to the other one
-            text = f"$\\alpha_{node} = 0$: {_structure(kind, (node,))}"
+            text = f"$\\alpha_{node + 1} = 0$: {_structure(kind, (node,))}"
             ax.plot(*np.array([(0, 0), edges[other]]).T, color=colours[1 + node], linewidth=2.2, label=text)
         ax.plot(0, 0, "o", color=colours[3], label=f"0: {_structure(kind, (0, 1))}", zorder=4)
         size = 1.2 * max(abs(roots).max(), abs(edges).max(), abs(corner).max())
