@@ -302,7 +302,7 @@ def _draw_diagram(
                 _draw_bond(ax, places[longer], places[shorter], row[j] * cartan[j][i])
     circle = matplotlib_module("patches").Circle
     for i, place in enumerate(places):
-        face = ink if i in full else "none"
+        face = "black" if i in full else "white"  # in dark pictures too: the convention names these colours
         ax.add_patch(circle(tuple(place), NODE, facecolor=face, edgecolor=ink, linewidth=1.3, zorder=3))
     for i, j in arrows:
         _draw_arrow(ax, places, i, j, bool(cartan[i][j]))
@@ -315,7 +315,7 @@ def _draw_diagram(
         x, y = places[i] + _label_shift(places[near] - places[i])
         ax.text(x, y, str(label), ha="center", va="center", fontsize=size)
     if full:
-        ax.plot([], [], "o", color=ink, markersize=8, label=f"{meaning} root")
+        ax.plot([], [], "o", color="black", markeredgecolor=ink, markersize=8, label=f"{meaning} root")
         ax.legend(loc="upper left", bbox_to_anchor=(0.0, 0.02), borderaxespad=0.0)
     ax.set(aspect="equal", xlim=(low[0] - 0.7, high[0] + 0.7), ylim=(low[1] - 0.75, high[1] + 0.7))
     ax.set_axis_off()

@@ -29,7 +29,9 @@ def centers(ax):
 
 
 def full_nodes(ax):
-    return tuple(i for i, patch in enumerate(ax.patches) if patch.get_facecolor()[3] > 0)
+    """Black nodes; the others are white, in light and in dark pictures."""
+    assert {patch.get_facecolor() for patch in ax.patches} <= {(0.0, 0.0, 0.0, 1.0), (1.0, 1.0, 1.0, 1.0)}
+    return tuple(i for i, patch in enumerate(ax.patches) if patch.get_facecolor()[:3] == (0.0, 0.0, 0.0))
 
 
 def arrows(ax):
