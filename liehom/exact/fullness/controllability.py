@@ -11,7 +11,6 @@ from functools import cached_property
 from typing import Literal, final
 
 from liehom.base.errors import InputError, UndecidedError
-from liehom.base.objects import Displayed
 from liehom.exact.algebra.constructions.families import affine_of
 from liehom.exact.algebra.core.lie_algebra import LieAlgebra
 from liehom.exact.algebra.linear.complex_matrices import list_of_matrices
@@ -63,7 +62,7 @@ def controllability(
 
 @final
 @dataclass(frozen=True, slots=True)
-class Reach(Displayed):
+class Reach:
     """Whether a control system reaches every point of a space from every other.
 
     Attributes
@@ -88,7 +87,7 @@ class Reach(Displayed):
 
 
 @final
-class Controllability(Displayed):
+class Controllability:
     """Where a bilinear control system is transitive and controllable, a result of `controllability`.
 
     Attributes
