@@ -76,7 +76,7 @@ from liehom.exact.algebra.roots.root_system import root_system as root_system
 from liehom.exact.catalog.pairs import full_pairs as full_pairs, pair as pair
 from liehom.exact.fullness.certificate import Certificate as Certificate
 from liehom.exact.fullness.checker.verify import verify_certificate as verify_certificate
-from liehom.exact.fullness.controllability import controllability as controllability
+from liehom.exact.fullness.control_systems import controllability as controllability
 from liehom.exact.fullness.decide import classify as classify, decide_fullness as decide_fullness
 from liehom.exact.fullness.range_classification import classify_range as classify_range
 from liehom.exact.fullness.verdict import failure_report as failure_report

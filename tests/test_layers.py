@@ -38,7 +38,7 @@ ORDER: dict[str, list[str]] = {
         "liehom.exact.catalog": "names algebras pairs",
         "liehom.exact.fullness": (
             "classification_rows isotropy_action certificate certificate_writer checker search verify_classification "
-            "classification verdict numerical decide range_classification controllability"
+            "classification verdict numerical decide range_classification control_systems"
         ),
         "liehom.exact.fullness.checker": "verify_modular verify_roots verify_pair verify",
         "liehom.exact.fullness.search": "dominance forms witnesses",

@@ -1,7 +1,7 @@
 from liehom.exact.fullness.certificate import Certificate as Certificate
 from liehom.exact.fullness.checker.verify import verify_certificate as verify_certificate, verify_range as verify_range
 from liehom.exact.fullness.classification import Classification as Classification
-from liehom.exact.fullness.controllability import (
+from liehom.exact.fullness.control_systems import (
     Controllability as Controllability,
     Reach as Reach,
     controllability as controllability,
