@@ -56,8 +56,8 @@ ORDER: dict[str, list[str]] = {
         ),
         "liehom.flow": "door tracing series action steps run methods engines propagation convergence bodies spins",
         "liehom.flow.action": (
-            "maps exponential custom_exponential expression components frames field rigid_motions motions space fingerprint "
-            "invariants quadrics"
+            "maps exponential custom_exponential expression components frames field rigid_motions motions space "
+            "fingerprint invariants quadrics"
         ),
         "liehom.flow.convergence": "reference orders costs",
         "liehom.flow.engines": (
