@@ -128,6 +128,7 @@ from liehom.flow.action.motions import SE3 as SE3, SO3 as SO3
 from liehom.flow.action.space import Action as Action
 from liehom.flow.convergence.costs import work_precision as work_precision
 from liehom.flow.convergence.orders import observed_order as observed_order
+from liehom.flow.fractional import LinearFractional as LinearFractional
 from liehom.flow.methods.low_order import (
     BackwardEuler as BackwardEuler,
     Euler as Euler,

@@ -54,7 +54,9 @@ ORDER: dict[str, list[str]] = {
             "field grammar integer_matrices exact_field rational function_field polynomial modular number_fields "
             "floating complex_parts polynomial_matrix roots extension joint_spectrum sparse subspaces lattices"
         ),
-        "liehom.flow": "door tracing series action steps run methods engines propagation convergence bodies spins",
+        "liehom.flow": (
+            "door tracing series action steps run methods engines propagation convergence bodies fractional spins"
+        ),
         "liehom.flow.action": (
             "maps exponential custom_exponential expression components frames field rigid_motions motions space "
             "fingerprint invariants quadrics"
