@@ -143,5 +143,5 @@ class LinearFractional:
         dt: npt.ArrayLike | None = None,
         **options: Unpack[SingleRunOptions],
     ) -> Solution:
-        """Trajectories from X (..., p, q): `liehom.integrate` with `field`; `value` reads X from the result."""
+        """The solution of `liehom.integrate` with `field` from X (..., p, q), from which `value` reads X."""
         return integrate(self.field, t_span, self.start(x0), step=step, dt=dt, **options)

@@ -205,7 +205,7 @@ class _Orbits:
         return self.matrices[0].nrows
 
     def with_phases(self, phase: Matrix) -> _Orbits:
-        """The same with multiplication by i."""
+        """The orbits of the group with multiplication by i added."""
         return _Orbits(tuple(Representation.from_matrices([*self.matrices, phase]).matrices))
 
     @cached_property

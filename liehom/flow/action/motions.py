@@ -35,7 +35,7 @@ def _read(x: ValuesLike, shape: tuple[int, ...], what: str) -> Values:
 
 
 def _check_rotation(matrix: Values) -> None:
-    """Refuse numpy arrays that are no rotations; values of JAX may be traced and are not checked."""
+    """Refuse numpy arrays that are not rotations; values of JAX may be traced and are not checked."""
     if is_jax(matrix):
         return
     defect = np.abs(matrix @ np.swapaxes(matrix, -1, -2) - np.eye(3)).max(initial=0.0)
