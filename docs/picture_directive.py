@@ -39,7 +39,9 @@ class Picture(SphinxDirective):
 
 
 class Gallery(SphinxDirective):
-    """The directive ``gallery``: every picture with the page that uses it and its program, the shortest first."""
+    """The directive ``gallery``: the named pictures with the pages that use them and their programs, as equal cards."""
+
+    has_content = True
 
     def run(self) -> list[nodes.Node]:
         self.env.note_reread()  # pictures and pages change without this page
@@ -47,18 +49,21 @@ class Gallery(SphinxDirective):
         for path in sorted(DOCS.rglob("*.md")):
             for name, alt in USE.findall(path.read_text(encoding="utf-8")):
                 uses.setdefault(name, (path.relative_to(DOCS).with_suffix("").as_posix(), alt))
-        programs = {name: picture_source.script(function) for name, function in pictures.DRAWN.items()}
-        shown = sorted(uses, key=lambda name: programs[name].count("\n"))
-        return [
-            nodes.container("", *(self.item(name, *uses[name], programs[name]) for name in shown), classes=["gallery"])
-        ]
+        if unknown := [name for name in self.content if name not in uses]:
+            raise self.error(f"no page shows {', '.join(unknown)}")
+        return [nodes.container("", *(self.item(name, *uses[name]) for name in self.content), classes=["gallery"])]
 
-    def item(self, name: str, page: str, alt: str, program: str) -> nodes.Node:
-        """One picture, below it its title, the page and the folded program."""
+    def item(self, name: str, page: str, alt: str) -> nodes.Node:
+        """One picture, which opens in full size, below it its title, the page and the folded program."""
+        program = picture_source.script(pictures.DRAWN[name])
+        opened = [
+            nodes.reference("", "", image, refuri=f"_images/{name}_{kind}.svg", classes=[f"only-{kind}"])
+            for image, kind in zip(versions(name, alt), ("light", "dark"), strict=True)
+        ]
         link = addnodes.pending_xref(refdomain="std", reftype="doc", reftarget=f"/{page}", refexplicit=False)
         link += nodes.inline()
         title = nodes.paragraph("", "", nodes.strong("", name.replace("_", " ").capitalize()), nodes.Text(" in "), link)
         folded = nodes.raw("", f"<details><summary>{program.count(chr(10))} lines</summary>", format="html")
         code = nodes.literal_block(program, program, language="python")
         end = nodes.raw("", "</details>", format="html")
-        return nodes.container("", *versions(name, alt), title, folded, code, end, ids=[name])
+        return nodes.container("", nodes.paragraph("", "", *opened), title, folded, code, end, ids=[name])

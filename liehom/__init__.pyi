@@ -76,6 +76,7 @@ from liehom.exact.algebra.roots.root_system import root_system as root_system
 from liehom.exact.catalog.pairs import full_pairs as full_pairs, pair as pair
 from liehom.exact.fullness.certificate import Certificate as Certificate
 from liehom.exact.fullness.checker.verify import verify_certificate as verify_certificate
+from liehom.exact.fullness.control_systems import controllability as controllability
 from liehom.exact.fullness.decide import classify as classify, decide_fullness as decide_fullness
 from liehom.exact.fullness.range_classification import classify_range as classify_range
 from liehom.exact.fullness.verdict import failure_report as failure_report
@@ -124,9 +125,11 @@ from liehom.flow import (
     tracing as tracing,
 )
 from liehom.flow.action.field import GeneratorField as GeneratorField, hamiltonian_field as hamiltonian_field
+from liehom.flow.action.motions import SE3 as SE3, SO3 as SO3
 from liehom.flow.action.space import Action as Action
 from liehom.flow.convergence.costs import work_precision as work_precision
 from liehom.flow.convergence.orders import observed_order as observed_order
+from liehom.flow.fractional import LinearFractional as LinearFractional
 from liehom.flow.geodesics import geodesic as geodesic
 from liehom.flow.methods.low_order import (
     BackwardEuler as BackwardEuler,

@@ -11,7 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from liehom.base.lazy import names
+import liehom as lh
+from liehom.base.lazy import names, stub_names
 
 ROOT = Path(__file__).resolve().parent.parent
 
@@ -123,3 +124,14 @@ def test_a_name_that_a_package_lacks_is_an_attribute_error() -> None:
 
     with pytest.raises(AttributeError, match=r"module 'liehom.exact.algebra' has no attribute 'no_such'"):
         liehom.algebra.no_such  # noqa: B018
+
+
+def test_no_public_name_is_hidden_by_a_file() -> None:
+    """A file that is imported becomes an attribute of its package, in place of a name from elsewhere."""
+    root = Path(lh.__file__).parent
+    for stub in root.rglob("__init__.pyi"):
+        package = ".".join(("liehom", *stub.parent.relative_to(root).parts))
+        files = {path.stem for path in stub.parent.glob("*.py")}
+        files |= {path.parent.name for path in stub.parent.glob("*/__init__.py")}
+        hidden = {name for name, (module, _) in stub_names(stub).items() if name in files and module != package}
+        assert not hidden, f"{package}: {hidden}"

@@ -40,7 +40,7 @@ ORDER: dict[str, list[str]] = {
         "liehom.exact.catalog": "names algebras pairs",
         "liehom.exact.fullness": (
             "classification_rows isotropy_action certificate certificate_writer checker search verify_classification "
-            "classification verdict numerical decide range_classification"
+            "classification verdict numerical decide range_classification control_systems"
         ),
         "liehom.exact.fullness.checker": "verify_modular verify_roots verify_pair verify",
         "liehom.exact.fullness.search": "dominance forms witnesses",
@@ -60,11 +60,12 @@ ORDER: dict[str, list[str]] = {
             "subspaces lattices"
         ),
         "liehom.flow": (
-            "door tracing series action steps run methods engines propagation convergence bodies spins geodesics"
+            "door tracing series action steps run methods engines propagation convergence bodies fractional spins "
+            "geodesics"
         ),
         "liehom.flow.action": (
-            "maps exponential custom_exponential expression components frames field rigid_motions space fingerprint "
-            "invariants quadrics"
+            "maps exponential custom_exponential expression components frames field rigid_motions motions space "
+            "fingerprint invariants quadrics"
         ),
         "liehom.flow.convergence": "reference orders costs",
         "liehom.flow.engines": (

@@ -209,6 +209,12 @@ def finished(figure: Figure, path: str | os.PathLike[str] | None) -> Figure:
     return figure
 
 
+def written(axes: Axes, path: str | os.PathLike[str] | None) -> Axes:
+    """The axes, after their figure is written to a file if a path is given."""
+    finished(figure_of(axes), path)
+    return axes
+
+
 # SVG of a picture for a page of HTML that contains it, instead of a file of its own.
 
 Drawing: TypeAlias = "Callable[[], Axes]"  # A function that draws a picture

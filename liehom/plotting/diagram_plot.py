@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, TypeAlias, TypeVar
 
@@ -24,6 +25,7 @@ from liehom.plotting.canvas import (
     paper_colour,
     plain,
     style_unless,
+    written,
 )
 from liehom.plotting.phase_plot import AnyAxes
 
@@ -45,7 +47,13 @@ MAX_WIDTH = 12.0
 MAX_BRACKETS = 60
 
 
-def plot_dynkin(kind: str, ax: Axes | None = None, *, labels: Sequence[object] | None = None) -> Axes:
+def plot_dynkin(
+    kind: str,
+    ax: Axes | None = None,
+    *,
+    labels: Sequence[object] | None = None,
+    path: str | os.PathLike[str] | None = None,
+) -> Axes:
     """Draw the Dynkin diagram of a type.
 
     Parameters
@@ -56,7 +64,9 @@ def plot_dynkin(kind: str, ax: Axes | None = None, *, labels: Sequence[object] |
         Axes in the plane; by default new ones.
     labels : sequence, optional
         What to write at the nodes: coefficients of a highest weight or of the highest root. By default the numbers of
-        the simple roots.
+        the simple roots, from 1 as in Bourbaki.
+    path : path, optional
+        A file to write the picture to.
 
     Returns
     -------
@@ -80,14 +90,16 @@ def plot_dynkin(kind: str, ax: Axes | None = None, *, labels: Sequence[object] |
     >>> ax = lh.plotting.plot_dynkin("E8", labels=lh.root_system("E8").highest_roots[0])  # doctest: +SKIP
     """
     cartan = cartan_matrix(kind)
-    names = list(range(len(cartan))) if labels is None else list(labels)
+    names = list(range(1, len(cartan) + 1)) if labels is None else list(labels)
     if len(names) != len(cartan):
         raise ShapeError(f"{kind} has {len(cartan)} nodes, got {len(names)} labels")
     with style_unless(ax):
-        return _draw_diagram(ax, kind, kind, names)
+        return written(_draw_diagram(ax, kind, kind, names), path)
 
 
-def plot_satake(form: str | RealForm | SatakeDiagram, ax: Axes | None = None) -> Axes:
+def plot_satake(
+    form: str | RealForm | SatakeDiagram, ax: Axes | None = None, *, path: str | os.PathLike[str] | None = None
+) -> Axes:
     """Draw the Satake diagram of a simple real Lie algebra.
 
     Parameters
@@ -96,6 +108,8 @@ def plot_satake(form: str | RealForm | SatakeDiagram, ax: Axes | None = None) ->
         'su(3,2)', 'e6(-26)', 'sl(3,C)', ...
     ax : matplotlib.axes.Axes, optional
         Axes in the plane; by default new ones.
+    path : path, optional
+        A file to write the picture to.
 
     Returns
     -------
@@ -121,10 +135,14 @@ def plot_satake(form: str | RealForm | SatakeDiagram, ax: Axes | None = None) ->
     split = f"restricted roots {satake.restricted_type}, real rank {satake.real_rank}"
     title = name + (split if satake.real_rank else "compact")
     with style_unless(ax):
-        return _draw_diagram(ax, satake.type, title, full=satake.black, arrows=satake.arrows, meaning="compact")
+        return written(
+            _draw_diagram(ax, satake.type, title, full=satake.black, arrows=satake.arrows, meaning="compact"), path
+        )
 
 
-def plot_vogan(form: str | RealForm | VoganDiagram, ax: Axes | None = None) -> Axes:
+def plot_vogan(
+    form: str | RealForm | VoganDiagram, ax: Axes | None = None, *, path: str | os.PathLike[str] | None = None
+) -> Axes:
     """Draw the Vogan diagram of a simple real Lie algebra.
 
     Parameters
@@ -133,6 +151,8 @@ def plot_vogan(form: str | RealForm | VoganDiagram, ax: Axes | None = None) -> A
         'su(3,2)', 'e6(-26)', 'sl(3,C)', ...
     ax : matplotlib.axes.Axes, optional
         Axes in the plane; by default new ones.
+    path : path, optional
+        A file to write the picture to.
 
     Returns
     -------
@@ -157,10 +177,14 @@ def plot_vogan(form: str | RealForm | VoganDiagram, ax: Axes | None = None) -> A
     arrows = [(i, j) for i, j in enumerate(vogan.automorphism) if i < j]
     title = f"{name}dim k = {vogan.compact_dimension}, character {vogan.character}"
     with style_unless(ax):
-        return _draw_diagram(ax, vogan.type, title, full=vogan.painted, arrows=arrows, meaning="noncompact")
+        return written(
+            _draw_diagram(ax, vogan.type, title, full=vogan.painted, arrows=arrows, meaning="noncompact"), path
+        )
 
 
-def plot_bracket_table(algebra: LieAlgebra, ax: Axes | None = None) -> Axes:
+def plot_bracket_table(
+    algebra: LieAlgebra, ax: Axes | None = None, *, path: str | os.PathLike[str] | None = None
+) -> Axes:
     """Draw which basis elements appear in the brackets of basis elements, and with which sign.
 
     Parameters
@@ -169,6 +193,8 @@ def plot_bracket_table(algebra: LieAlgebra, ax: Axes | None = None) -> Axes:
         Of dimension at most 60; pictures are easy to read up to dimension 30.
     ax : matplotlib.axes.Axes, optional
         Axes in the plane; by default new ones.
+    path : path, optional
+        A file to write the picture to.
 
     Returns
     -------
@@ -215,7 +241,7 @@ def plot_bracket_table(algebra: LieAlgebra, ax: Axes | None = None) -> Axes:
         ax.grid(visible=False)
         ax.spines[:].set_visible(False)
         ax.set_title(f"{plain(algebra.name or 'Lie algebra')}: [row, column]", loc="left")
-    return ax
+    return written(ax, path)
 
 
 def node_places(kind: str, arrows: Iterable[tuple[int, int]] = ()) -> Array:
@@ -276,12 +302,12 @@ def _draw_diagram(
                 _draw_bond(ax, places[longer], places[shorter], row[j] * cartan[j][i])
     circle = matplotlib_module("patches").Circle
     for i, place in enumerate(places):
-        face = ink if i in full else "none"
+        face = "black" if i in full else "white"  # in dark pictures too: the convention names these colours
         ax.add_patch(circle(tuple(place), NODE, facecolor=face, edgecolor=ink, linewidth=1.3, zorder=3))
     for i, j in arrows:
         _draw_arrow(ax, places, i, j, bool(cartan[i][j]))
     size = float(np.clip(20 * unit, 4, 9))
-    for i, label in enumerate(range(len(places)) if labels is None else labels):
+    for i, label in enumerate(range(1, len(places) + 1) if labels is None else labels):
         # no label towards bonds, arrows, and the other line of a folded diagram
         facing = (places[:, 0] == places[i, 0]) & (abs(places[:, 1] - places[i, 1]) <= 1)
         joined = [(i, j) in arrows or (j, i) in arrows or cartan[i][j] != 0 for j in range(len(places))]
@@ -289,7 +315,7 @@ def _draw_diagram(
         x, y = places[i] + _label_shift(places[near] - places[i])
         ax.text(x, y, str(label), ha="center", va="center", fontsize=size)
     if full:
-        ax.plot([], [], "o", color=ink, markersize=8, label=f"{meaning} root")
+        ax.plot([], [], "o", color="black", markeredgecolor=ink, markersize=8, label=f"{meaning} root")
         ax.legend(loc="upper left", bbox_to_anchor=(0.0, 0.02), borderaxespad=0.0)
     ax.set(aspect="equal", xlim=(low[0] - 0.7, high[0] + 0.7), ylim=(low[1] - 0.75, high[1] + 0.7))
     ax.set_axis_off()
@@ -401,7 +427,9 @@ LARGEST = 1_000_000  # Largest dimension of a module whose weights are drawn; th
 VIEW = (22.0, 72.0)  # Elevation and azimuth, in degrees, from which few roots of A3, B3 and C3 hide one another
 
 
-def plot_root_system(kind: str | RootSystem, ax: Axes | None = None) -> Axes:
+def plot_root_system(
+    kind: str | RootSystem, ax: Axes | None = None, *, path: str | os.PathLike[str] | None = None
+) -> Axes:
     """Draw the roots of a root system of rank 1, 2 or 3, with the simple roots named.
 
     Parameters
@@ -410,6 +438,8 @@ def plot_root_system(kind: str | RootSystem, ax: Axes | None = None) -> Axes:
         'A2', 'G2', 'B3', 'A1 + A1', or the result of ``algebra.root_system()``.
     ax : matplotlib.axes.Axes, optional
         Axes to draw in, for rank 3 with ``projection="3d"``; by default new ones.
+    path : path, optional
+        A file to write the picture to.
 
     Returns
     -------
@@ -440,12 +470,18 @@ def plot_root_system(kind: str | RootSystem, ax: Axes | None = None) -> Axes:
                 _plot(ax, part, marker=MARKERS[k], linestyle="", color=colours[k], alpha=alpha, label=text, zorder=3)
         gap = 0.16 * float(np.sqrt(norms.max()))
         for node, root in enumerate(_padded(simple)):
-            _write(ax, _beside(root, gap), f"$\\alpha_{node}$")
+            _write(ax, _beside(root, gap), f"$\\alpha_{node + 1}$")
         _finish(ax, _padded(system.root_matrix() @ simple), f"{system.type}: {system.number_of_roots} roots")
-    return ax
+    return written(ax, path)
 
 
-def plot_weights(kind: str | RootSystem, highest_weight: Sequence[int], ax: Axes | None = None) -> Axes:
+def plot_weights(
+    kind: str | RootSystem,
+    highest_weight: Sequence[int],
+    ax: Axes | None = None,
+    *,
+    path: str | os.PathLike[str] | None = None,
+) -> Axes:
     """Draw the weights of an irreducible module with their multiplicities, for rank 1, 2 or 3.
 
     Parameters
@@ -456,6 +492,8 @@ def plot_weights(kind: str | RootSystem, highest_weight: Sequence[int], ax: Axes
         Dominant, in fundamental coordinates, in Bourbaki's numbering.
     ax : matplotlib.axes.Axes, optional
         Axes to draw in, for rank 3 with ``projection="3d"``; by default new ones.
+    path : path, optional
+        A file to write the picture to.
 
     Returns
     -------
@@ -494,7 +532,7 @@ def plot_weights(kind: str | RootSystem, highest_weight: Sequence[int], ax: Axes
         _write(ax, _beside(points[0], 0.14 * max(abs(points).max(), 0.5)), r"$\lambda$")
         where = f"$\\lambda$ = {top if len(top) > 1 else top[0]}"
         _finish(ax, points, f"{system.type}, {where}: dimension {times.sum()}, {len(points)} weights")
-    return ax
+    return written(ax, path)
 
 
 def _draw_multiplicities(ax: Axes, points: Array, times: IntegerArray) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Mapping, Sequence
 from math import isqrt
 from typing import TYPE_CHECKING, NamedTuple, TypeAlias
@@ -13,7 +14,7 @@ from liehom.base.errors import InputError, ShapeError, displayed
 from liehom.base.typing import Array
 from liehom.flow.run.solution import Solution
 from liehom.flow.steps.first_integral import FirstIntegral, IntegralSource
-from liehom.plotting.canvas import DASHES, MARKERS, current_colours, plane_axes, style_unless
+from liehom.plotting.canvas import DASHES, MARKERS, current_colours, plane_axes, style_unless, written
 from liehom.plotting.trajectory_plot import MAX_TRAJECTORIES, real_numbers
 
 if TYPE_CHECKING:
@@ -45,6 +46,7 @@ def plot_energy_drift(
     labels: Sequence[str] | None = None,
     largest_so_far: bool = True,
     value: npt.ArrayLike | None = None,
+    path: str | os.PathLike[str] | None = None,
 ) -> Axes:
     """Draw the error of an energy or another first integral over time, one curve for each solution.
 
@@ -65,6 +67,8 @@ def plot_energy_drift(
     value : float or array of shape (k,), optional
         The exact value of F, in place of its value at the first stored point of each trajectory. It is needed if
         `t_eval` did not contain the initial time.
+    path : path, optional
+        A file to write the picture to.
 
     Returns
     -------
@@ -102,7 +106,7 @@ def plot_energy_drift(
         scales = {"xscale": "log", "yscale": "log"} if logarithmic else {"yscale": "log"}
         ax.set(**scales, xlabel="time since the initial point", ylabel=what)
         ax.legend(loc="best", handlelength=3.0)
-    return ax
+    return written(ax, path)
 
 
 def _named(
@@ -183,6 +187,7 @@ def plot_spectrum(
     ax: Axes | None = None,
     *,
     matrices: Callable[[Array], npt.ArrayLike] | None = None,
+    path: str | os.PathLike[str] | None = None,
 ) -> Axes:
     """Draw the eigenvalues of a trajectory of symmetric matrices over time, one color for each eigenvalue.
 
@@ -195,6 +200,8 @@ def plot_spectrum(
         Axes in the plane; by default new ones.
     matrices : callable, optional
         Symmetric or Hermitian matrices (n, k, k) of points (n, N), for other coordinates.
+    path : path, optional
+        A file to write the picture to.
 
     Returns
     -------
@@ -229,7 +236,7 @@ def plot_spectrum(
         ax.margins(x=0.01)
         if len(named) > 1 or "" not in named:
             ax.legend(loc="upper center", bbox_to_anchor=(0.5, 1.14), ncols=3)
-    return ax
+    return written(ax, path)
 
 
 def spectrum(trajectory: Trajectory, matrices: Callable[[Array], npt.ArrayLike] | None = None) -> tuple[Array, Array]:

@@ -23,6 +23,7 @@ from liehom.plotting.canvas import (
     paper_colour,
     plane_axes,
     style_unless,
+    written,
 )
 
 if TYPE_CHECKING:
@@ -245,7 +246,12 @@ COSTS: dict[str, tuple[str, Callable[[WorkPrecisionRow], float]]] = {
 
 
 def plot_work_precision(
-    table: WorkPrecisionTable, ax: Axes | None = None, *, against: str = "time", error: str = "trajectory"
+    table: WorkPrecisionTable,
+    ax: Axes | None = None,
+    *,
+    against: str = "time",
+    error: str = "trajectory",
+    path: str | os.PathLike[str] | None = None,
 ) -> Axes:
     """Draw the errors of a table of `work_precision` over the cost, one curve for each method.
 
@@ -257,6 +263,8 @@ def plot_work_precision(
     against : "time", "wall", "calls" or "steps"
         The cost: CPU time, wall-clock time, calls of the field, or steps.
     error : "trajectory" or "orbit"
+    path : path, optional
+        A file to write the picture to.
 
     Returns
     -------
@@ -300,7 +308,7 @@ def plot_work_precision(
             ax.legend(loc="best", handlelength=3.0)
         else:  # next to the curves, which usually cross the whole axes
             figure_of(ax).legend(loc="outside lower center", ncols=2, handlelength=3.0)
-    return ax
+    return written(ax, path)
 
 
 def _small_label(x: float, low: float, high: float) -> str:

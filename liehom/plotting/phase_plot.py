@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import os
 from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias, final
 
@@ -23,6 +24,7 @@ from liehom.plotting.canvas import (
     pale_colour,
     paper_colour,
     style_unless,
+    written,
 )
 
 if TYPE_CHECKING:
@@ -308,6 +310,7 @@ def plot_phase_portrait(
     energy: IntegralSource | None = None,
     radius: float = 1.0,
     levels: int = 5,
+    path: str | os.PathLike[str] | None = None,
 ) -> Axes:
     """Draw the phase portrait of a field on a sphere: level sets of its energy, equilibria by type, and separatrices.
 
@@ -324,6 +327,8 @@ def plot_phase_portrait(
         Radius of the sphere.
     levels : int, optional
         Number of level sets between two critical values of the energy.
+    path : path, optional
+        A file to write the picture to.
 
     Returns
     -------
@@ -357,7 +362,7 @@ def plot_phase_portrait(
         _mark(scene, surface, points)
         scene.frame(radius, ("$m_0$", "$m_1$", "$m_2$"))
         scene.limit(radius, zoom=1.15)
-    return scene.axes
+    return written(scene.axes, path)
 
 
 class Flow(NamedTuple):

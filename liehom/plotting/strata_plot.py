@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, TypeAlias
 
@@ -16,7 +17,7 @@ from liehom.exact.orbits.cone import FailureSet, RelativeInvariant
 from liehom.exact.orbits.strata import adjoint_strata, symmetric_strata
 from liehom.exact.representations.core.pair import Pair
 from liehom.exact.scalars.field import Matrix
-from liehom.plotting.canvas import GREY, axes_of_dimension, current_colours, new_figure, plain, style_unless
+from liehom.plotting.canvas import GREY, axes_of_dimension, current_colours, new_figure, plain, style_unless, written
 from liehom.plotting.diagram_plot import simple_root_coordinates
 from liehom.plotting.phase_plot import AZIMUTH, ELEVATION, AnyAxes, Scene, sphere
 
@@ -28,7 +29,7 @@ Term: TypeAlias = tuple[Array, float]  # Exponents and coefficient of one term o
 GRID = 181  # Points of the half circle on which zeros are looked for
 
 
-def plot_failure_cone(pair: Pair, ax: Axes | None = None) -> Axes:
+def plot_failure_cone(pair: Pair, ax: Axes | None = None, *, path: str | os.PathLike[str] | None = None) -> Axes:
     """Draw the cone of the psi at which the range condition (6.3) fails, in g/h of dimension 2 or 3.
 
     Parameters
@@ -37,6 +38,8 @@ def plot_failure_cone(pair: Pair, ax: Axes | None = None) -> Axes:
         Over QQ, with dim g/h 2 or 3.
     ax : matplotlib.axes.Axes, optional
         Axes to draw in, for dimension 3 with ``projection="3d"``; by default new ones.
+    path : path, optional
+        A file to write the picture to.
 
     Returns
     -------
@@ -65,7 +68,7 @@ def plot_failure_cone(pair: Pair, ax: Axes | None = None) -> Axes:
         for curve in curves:
             _draw(ax, curve, colours[0])
         ax.set_title(_title(pair, report.generic.holds, len(curves)), loc="left")
-    return ax
+    return written(ax, path)
 
 
 def failure_curves(report: FailureReport, dimension: int) -> list[Array]:
@@ -174,7 +177,9 @@ def _draw(ax: Axes, curve: Array, colour: str) -> None:
     ax.plot(*curve, color=colour)
 
 
-def plot_eigenvalues(ax: Axes | None = None, *, points: Sequence[Sequence[float]] = ()) -> Axes:
+def plot_eigenvalues(
+    ax: Axes | None = None, *, points: Sequence[Sequence[float]] = (), path: str | os.PathLike[str] | None = None
+) -> Axes:
     """Draw the eigenvalues of symmetric 3 x 3 matrices of trace 1, in a triangle divided by the orbit types of SO(3).
 
     Parameters
@@ -183,6 +188,8 @@ def plot_eigenvalues(ax: Axes | None = None, *, points: Sequence[Sequence[float]
         Axes in the plane; by default new ones.
     points : sequence of (a, b, c), optional
         Eigenvalues of matrices to mark; they are divided by their sum, which must be positive.
+    path : path, optional
+        A file to write the picture to.
 
     Returns
     -------
@@ -224,10 +231,10 @@ def plot_eigenvalues(ax: Axes | None = None, *, points: Sequence[Sequence[float]
         ax.set(aspect="equal", xlim=(-1.15, 1.15), ylim=(-0.75, 1.25))
         ax.set_axis_off()
         ax.legend(loc="upper center", bbox_to_anchor=(0.5, 0.02), fontsize=8)
-    return ax
+    return written(ax, path)
 
 
-def plot_weyl_chamber(kind: str, ax: Axes | None = None) -> Axes:
+def plot_weyl_chamber(kind: str, ax: Axes | None = None, *, path: str | os.PathLike[str] | None = None) -> Axes:
     """Draw a root system of rank 2 with its Weyl chamber, whose walls are the strata of the adjoint representation.
 
     Parameters
@@ -236,6 +243,8 @@ def plot_weyl_chamber(kind: str, ax: Axes | None = None) -> Axes:
         'A2', 'B2', 'C2', 'G2' or 'A1 + A1'.
     ax : matplotlib.axes.Axes, optional
         Axes in the plane; by default new ones.
+    path : path, optional
+        A file to write the picture to.
 
     Returns
     -------
@@ -260,20 +269,20 @@ def plot_weyl_chamber(kind: str, ax: Axes | None = None) -> Axes:
         for root in roots:
             ax.annotate("", root, (0, 0), arrowprops={"arrowstyle": "-|>", "color": GREY, "linewidth": 1.2})
         for node, root in enumerate(simple):
-            ax.annotate(f"$\\alpha_{node}$", 1.13 * root, ha="center", va="center")
+            ax.annotate(f"$\\alpha_{node + 1}$", 1.13 * root, ha="center", va="center")
         corner = edges.sum(axis=0) * 0.62
         ax.fill(*np.array([(0, 0), edges[0], edges[1]]).T, color=colours[0], alpha=0.15, linewidth=0)
         ax.plot([], [], color=colours[0], alpha=0.4, linewidth=6, label=f"inside: {_structure(kind, ())}")
         for node in (0, 1):
             other = 1 - node  # the wall on which this simple root vanishes is the edge dual to the other one
-            text = f"$\\alpha_{node} = 0$: {_structure(kind, (node,))}"
+            text = f"$\\alpha_{node + 1} = 0$: {_structure(kind, (node,))}"
             ax.plot(*np.array([(0, 0), edges[other]]).T, color=colours[1 + node], linewidth=2.2, label=text)
         ax.plot(0, 0, "o", color=colours[3], label=f"0: {_structure(kind, (0, 1))}", zorder=4)
         size = 1.2 * max(abs(roots).max(), abs(edges).max(), abs(corner).max())
         ax.set(aspect="equal", xlim=(-size, size), ylim=(-size, size), title=f"{kind}: isotropy in the adjoint action")
         ax.set_axis_off()
         ax.legend(loc="upper center", bbox_to_anchor=(0.5, 0.04), ncols=2, fontsize=8)
-    return ax
+    return written(ax, path)
 
 
 def _structure(kind: str, vanishing: tuple[int, ...]) -> str:

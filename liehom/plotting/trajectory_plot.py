@@ -32,6 +32,7 @@ from liehom.plotting.canvas import (
     paper_colour,
     plane_axes,
     style_unless,
+    written,
 )
 from liehom.plotting.phase_plot import FAINT, AnyAxes, Quadric, Scene, only, space_axes, sphere
 
@@ -252,7 +253,11 @@ def plot_trajectory(
 
 
 def plot_quadric(
-    form: Representation | npt.ArrayLike, through: Solution | npt.ArrayLike, ax: Axes | None = None
+    form: Representation | npt.ArrayLike,
+    through: Solution | npt.ArrayLike,
+    ax: Axes | None = None,
+    *,
+    path: str | os.PathLike[str] | None = None,
 ) -> Axes:
     """Draw the quadrics m^T Q m = c in space on which given trajectories or points are, with the trajectories.
 
@@ -264,6 +269,8 @@ def plot_quadric(
         A solution of `integrate`, of an ensemble the first 50 trajectories; or points.
     ax : matplotlib.axes.Axes, optional
         Axes in space or in the plane; by default new ones in space.
+    path : path, optional
+        A file to write the picture to.
 
     Returns
     -------
@@ -314,7 +321,7 @@ def plot_quadric(
         scene.limit((high - low) / 2, (high + low) / 2, zoom=1.0)
         title = ", ".join(f"{s.kind}, $c$ = {s.level:.4g}" for s in shown[:TITLED])
         scene.axes.set_title(title + (f", and {len(shown) - TITLED} more" if len(shown) > TITLED else ""), loc="left")
-    return scene.axes
+    return written(scene.axes, path)
 
 
 def _points(through: npt.ArrayLike) -> Array:

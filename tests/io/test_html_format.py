@@ -144,7 +144,7 @@ def evil_objects() -> Iterator[Typeset]:
     yield pair
     yield lh.decide_fullness(pair)
     yield paper.Table(EVIL, (EVIL, "x"), [(EVIL, 1.0)])
-    yield lh.methods.Tableau(EVIL, [[0]], [1], 1)
+    yield lh.methods.Tableau([[0]], [1], 1, name=EVIL)
 
 
 def test_names_are_escaped() -> None:

@@ -29,7 +29,9 @@ def centers(ax):
 
 
 def full_nodes(ax):
-    return tuple(i for i, patch in enumerate(ax.patches) if patch.get_facecolor()[3] > 0)
+    """Black nodes; the others are white, in light and in dark pictures."""
+    assert {patch.get_facecolor() for patch in ax.patches} <= {(0.0, 0.0, 0.0, 1.0), (1.0, 1.0, 1.0, 1.0)}
+    return tuple(i for i, patch in enumerate(ax.patches) if patch.get_facecolor()[:3] == (0.0, 0.0, 0.0))
 
 
 def arrows(ax):
@@ -100,7 +102,7 @@ def test_no_label_lies_on_another_or_on_a_node(kind):
 def test_labels_replace_the_numbers_of_nodes():
     marks = lh.root_system("E8").highest_roots[0]
     assert [text.get_text() for text in plot_dynkin("E8", labels=marks).texts] == [str(x) for x in marks]
-    assert [text.get_text() for text in plot_dynkin("A3").texts] == ["0", "1", "2"]
+    assert [text.get_text() for text in plot_dynkin("A3").texts] == ["1", "2", "3"]
     with pytest.raises(lh.ShapeError, match="8 nodes, got 2"):
         plot_dynkin("E8", labels=(1, 2))
     with pytest.raises(lh.CatalogError):

@@ -150,13 +150,20 @@ def _why(action: TracelessIsotropyAction, isotropy: str, certificate: Certificat
     if d <= 1:
         return ("h = g", "any eta outside h spans g/h")[d]
     how = "transitive on the rays already through the elements that preserve a definite form"
-    if _all_preserve_the_form(action, certificate):
+    if _keeps(action, certificate):
         scalars = " up to scalars" if any(a.trace() != 0 for a in action.matrices) else ""
         how = f"compact{scalars} and transitive on the sphere"
     return f"h acts on g/h = R^{d} as {isotropy}, {how}; checked at one point"
 
 
-def _all_preserve_the_form(action: TracelessIsotropyAction, certificate: Certificate) -> bool:
+def preserves_its_form(verdict: Full) -> bool:
+    """True if L0 of a full pair is compact: it preserves the definite form of the certificate."""
+    if verdict.certificate.kind != "full":
+        return False
+    return _keeps(TracelessIsotropyAction(verdict.pair), verdict.certificate)
+
+
+def _keeps(action: TracelessIsotropyAction, certificate: Certificate) -> bool:
     """True if L0 preserves the definite form of a certificate of kind 'full', so that L0 is compact."""
     n = action.pair.algebra.dimension
     lift = action.quotient.lift

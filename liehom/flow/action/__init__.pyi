@@ -16,6 +16,7 @@ from liehom.flow.action.field import (
     lie_poisson_tensor as lie_poisson_tensor,
 )
 from liehom.flow.action.frames import InnerProduct as InnerProduct, inner_product as inner_product
+from liehom.flow.action.motions import SE3 as SE3, SO3 as SO3
 from liehom.flow.action.rigid_motions import (
     matrix_to_quaternion as matrix_to_quaternion,
     quaternion_exp as quaternion_exp,

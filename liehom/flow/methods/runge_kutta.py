@@ -284,13 +284,15 @@ class Tableau(Displayed):
 
     Parameters
     ----------
-    name : str
     a : array-like (s, s)
         Integers, fractions, strings such as '1/2' or 'sqrt(3)/6', field elements, or floats. An explicit method
         may give row i by its i entries below the diagonal.
     b : array-like (s,)
-    order : int
-        The claimed order, from 1 to `rooted_trees.MAX_ORDER`: every condition up to it must hold.
+    order : int, optional
+        The claimed order, from 1 to `rooted_trees.MAX_ORDER`: every condition up to it must hold. By default the
+        highest order that holds.
+    name : str, optional
+        What errors and plots call the method.
     c : array-like (s,), optional
         The row sums of a; they are checked if given.
     embedded_b : array-like (s,), optional
@@ -320,12 +322,12 @@ class Tableau(Displayed):
     Examples
     --------
     >>> import numpy as np
-    >>> method = Tableau("two thirds", a=[[], ["2/3"]], b=["1/4", "3/4"], order=2)
+    >>> method = Tableau([[], ["2/3"]], ["1/4", "3/4"], name="two thirds")
     >>> method
     <tableau 'two thirds' of order 2, 2 stages, over QQ>
     >>> method.first_violation().order, method.to_numpy(np.float32)[1]
     (3, array([0.25, 0.75], dtype=float32))
-    >>> Tableau("wrong", a=[[], ["2/3"]], b=["1/2", "1/2"], order=2)
+    >>> Tableau([[], ["2/3"]], ["1/2", "1/2"], order=2, name="wrong")
     Traceback (most recent call last):
     ...
     liehom.base.errors.InputError: tableau 'wrong' is claimed to have order 2, but its order condition fails for the \
@@ -345,11 +347,11 @@ tree [τ] of order 2: weight 1/3, expected 1/2, defect -1/6; claim order 1, whic
 
     def __init__(
         self,
-        name: str,
         a: Sequence[Sequence[ScalarLike]] | npt.NDArray[Any],
         b: VectorLike,
-        order: int,
+        order: int | None = None,
         *,
+        name: str = "given",
         c: VectorLike | None = None,
         embedded_b: VectorLike | None = None,
         embedded_order: int | None = None,
@@ -375,7 +377,7 @@ tree [τ] of order 2: weight 1/3, expected 1/2, defect -1/6; claim order 1, whic
         set_(self, "tolerance", float(tolerance))
         if not 0 < self.tolerance < 1:
             raise InputError(f"the tolerance of the order conditions lies between 0 and 1, got {tolerance!r}")
-        set_(self, "order", checked_order(order))
+        set_(self, "order", max(self.actual_order(), 1) if order is None else checked_order(order))
         self._prove(embedded_order)
 
     @property
@@ -419,7 +421,7 @@ tree [τ] of order 2: weight 1/3, expected 1/2, defect -1/6; claim order 1, whic
 
         Examples
         --------
-        >>> Tableau("modest", a=[[], [1]], b=["1/2", "1/2"], order=1).actual_order()
+        >>> Tableau([[], [1]], ["1/2", "1/2"], order=1).actual_order()
         2
         """
         violation = self.first_violation(embedded=embedded)
@@ -551,7 +553,6 @@ def _restored(
     """The tableau that `Tableau.__reduce__` describes."""
     *a, b, c, embedded = rows
     return Tableau(
-        name,
         a,
         b,
         order,
@@ -560,6 +561,7 @@ def _restored(
         embedded_order=embedded_order,
         field=NumberField(*field) if isinstance(field, tuple) else field,
         tolerance=tolerance,
+        name=name,
     )
 
 

@@ -155,7 +155,7 @@ def collocation(name: str, nodes: Sequence[ScalarLike], order: int, *, field: Fi
     if len(set(c)) != len(c):
         raise InputError(f"the nodes of a collocation method are different numbers, got {', '.join(texts)}")
     *a, b = _coefficients(c, numbers)
-    return Tableau(name, a, b, order, c=c, field=numbers)
+    return Tableau(a, b, order, c=c, field=numbers, name=name)
 
 
 def _coefficients(c: list[Scalar], field: Field) -> list[list[Scalar]]:
@@ -222,7 +222,7 @@ def radau(stages: int) -> Tableau:
 
 def _in_floats(name: str, c: list[Scalar], order: int) -> Tableau:
     *a, b = [[QQ.to_float(x) for x in row] for row in _coefficients(c, QQ)]
-    return Tableau(name, a, b, order, c=[QQ.to_float(x) for x in c], field=RR)
+    return Tableau(a, b, order, c=[QQ.to_float(x) for x in c], field=RR, name=name)
 
 
 def _legendre(n: int) -> list[int]:
@@ -336,12 +336,12 @@ def _made(name: str) -> Tableau:
         return collocation(name, COLLOCATION[name].nodes.split(","), COLLOCATION[name].order)
     data = EXPLICIT[name] if name in EXPLICIT else IMPLICIT[name]
     return Tableau(
-        name,
         [row.split() for row in data.a.split(";")],
         data.b.split(),
         data.order,
         embedded_b=data.embedded.split() or None,
         embedded_order=data.embedded_order,
+        name=name,
     )
 
 
@@ -351,5 +351,5 @@ def _dop853() -> Tableau:
 
     stages = len(DOP853.B)
     return Tableau(
-        "dop853", DOP853.A, DOP853.B, 8, c=DOP853.C, embedded_b=DOP853.B - DOP853.E5[:stages], embedded_order=5
+        DOP853.A, DOP853.B, 8, c=DOP853.C, embedded_b=DOP853.B - DOP853.E5[:stages], embedded_order=5, name="dop853"
     )

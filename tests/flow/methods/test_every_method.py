@@ -108,5 +108,5 @@ def test_every_named_step_has_its_order(name: str, manifold: str, engine: str) -
 def test_a_wrong_coefficient_is_noticed(manifold: str) -> None:
     """The negative control: the classical method with two weights exchanged has order 1."""
     right = lh.tableau("rk4")
-    wrong = lh.methods.Tableau("wrong", right.a, [right.b[1], right.b[0], *right.b[2:]], order=1)
+    wrong = lh.methods.Tableau(right.a, [right.b[1], right.b[0], *right.b[2:]], order=1, name="wrong")
     assert slope(manifold, lh.RKMK(wrong), "numpy")[0] < 1 + WINDOW

@@ -64,7 +64,7 @@ def test_a_step_is_known_by_its_tableau() -> None:
 
 
 def test_a_user_tableau() -> None:
-    step = RKMK(Tableau("two thirds", a=[[], ["2/3"]], b=["1/4", "3/4"], order=2))
+    step = RKMK(Tableau(a=[[], ["2/3"]], b=["1/4", "3/4"], order=2, name="two thirds"))
     assert exact_order(step, "so(3)", timed=True, seed=0) == 2
 
 
@@ -252,7 +252,7 @@ def test_the_estimate_is_the_error_of_the_lower_method() -> None:
     local = pair("rk45", action, psi, m, t)
     h = np.full((4, 1), 0.01)
     low = local.estimate(h)
-    other = Tableau("low", tableau("rk45").a, tableau("rk45").embedded_b, 4)
+    other = Tableau(tableau("rk45").a, tableau("rk45").embedded_b, 4, name="low")
     flow = lh.steps.flow_series(psi.field, m, 10, t[..., 0])
     error = apply_factors(action, RKMK(other).at(action, psi, m, t).factors(h), m) - flow.points(h)
     assert np.abs(low + error).max() < 0.1 * np.abs(error).max()

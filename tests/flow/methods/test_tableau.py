@@ -195,11 +195,11 @@ def test_a_changed_coefficient_is_refused(name: str) -> None:
         wrong = copy.deepcopy(texts["a"])
         wrong[i][j] = f"{wrong[i][j]} + 1/1000"
         with pytest.raises(InputError, match=rf"c\[{i}\] = .* row {i} of a sums to"):
-            Tableau("mutant", wrong, texts["b"], method.order, c=texts["c"])
+            Tableau(wrong, texts["b"], method.order, c=texts["c"], name="mutant")
     for j in range(method.stages):
         wrong_b = [*texts["b"][:j], f"{texts['b'][j]} - 1/1000", *texts["b"][j + 1 :]]
         with pytest.raises(InputError, match=r"tree τ of order 1: weight 999/1000, expected 1, defect -1/1000"):
-            Tableau("mutant", texts["a"], wrong_b, method.order)
+            Tableau(texts["a"], wrong_b, method.order, name="mutant")
 
 
 def test_the_message_names_tree_and_defect() -> None:
@@ -210,23 +210,23 @@ def test_the_message_names_tree_and_defect() -> None:
         r"tree \[\[\[τ\]\]\] of order 4: weight 3/80, expected 1/24, defect -1/240; claim order 3, which holds, or"
     )
     with pytest.raises(InputError, match=said):
-        Tableau("mine", wrong, weights, 4)
-    assert Tableau("mine", wrong, weights, 3).actual_order() == 3
+        Tableau(wrong, weights, 4, name="mine")
+    assert Tableau(wrong, weights, 3, name="mine").actual_order() == 3
     with pytest.raises(InputError, match=r"^the embedded method of tableau 'h' .* order 2, .* tree \[τ\]"):
-        Tableau("h", [[], [1]], ["1/2", "1/2"], 2, embedded_b=[1, 0], embedded_order=2)
+        Tableau([[], [1]], ["1/2", "1/2"], 2, embedded_b=[1, 0], embedded_order=2, name="h")
     with pytest.raises(InputError, match=r"tree τ of order 1: weight 2, .*its weights must sum to 1"):
-        Tableau("two", [[0]], [2], 1)
+        Tableau([[0]], [2], 1, name="two")
     with pytest.raises(InputError, match=r"the embedded method of tableau 'h' .*must sum to 1"):
-        Tableau("h", [[], [1]], ["1/2", "1/2"], 2, embedded_b=[1, 1])
+        Tableau([[], [1]], ["1/2", "1/2"], 2, embedded_b=[1, 1], name="h")
 
 
 def test_the_proof_in_a_number_field_sees_the_sign_of_the_root() -> None:
     conjugate = collocation("conjugate", ["1/2 + sqrt(3)/6", "1/2 - sqrt(3)/6"], 4)
     assert conjugate.field == number_field("sqrt(3)")
     a = [["1/4", "1/4 + sqrt(3)/6"], ["1/4 - sqrt(3)/6", "1/4"]]
-    assert Tableau("swapped", a, ["1/2", "1/2"], 4).explicit is False
+    assert Tableau(a, ["1/2", "1/2"], 4, name="swapped").explicit is False
     with pytest.raises(InputError, match=r"sqrt\(3\)"):
-        Tableau("wrong", [["1/4", "1/4 - sqrt(3)/6"], ["1/4 + sqrt(3)/7", "1/4"]], ["1/2", "1/2"], 4)
+        Tableau([["1/4", "1/4 - sqrt(3)/6"], ["1/4 + sqrt(3)/7", "1/4"]], ["1/2", "1/2"], 4, name="wrong")
 
 
 @pytest.mark.parametrize(("error", "said", "arguments"), [
@@ -249,7 +249,7 @@ def test_the_proof_in_a_number_field_sees_the_sign_of_the_root() -> None:
 ])  # fmt: skip
 def test_refused_input(error: type[Exception], said: str, arguments: dict[str, Any]) -> None:
     with pytest.raises(error, match=said):
-        Tableau("bad", **{"order": 1, **arguments})
+        Tableau(**{"order": 1, **arguments}, name="bad")
 
 
 def test_refused_names_and_nodes() -> None:
@@ -281,24 +281,24 @@ def test_names_are_normalised(name: str) -> None:
 def test_aliases_and_objects() -> None:
     assert tableau("Backward Euler") is tableau("implicit_euler")
     assert tableau("gauss1") is tableau("implicit midpoint")
-    mine = Tableau("mine", [[0]], [1], 1)
+    mine = Tableau([[0]], [1], 1, name="mine")
     assert tableau(mine) is mine
 
 
 def test_many_kinds_of_numbers() -> None:
     import sympy
 
-    plain = Tableau("m", [[], ["1/2"]], [0, 1], 2)
+    plain = Tableau([[], ["1/2"]], [0, 1], 2, name="m")
     assert plain.field == QQ
     for half in (Fraction(1, 2), sympy.Rational(1, 2), QQ.convert("1/2"), "2/4"):
-        assert Tableau("m", [[], [half]], [np.int64(0), 1], 2) == plain
-    floats = Tableau("m", np.array([[0, 0], [0.5, 0]]), ["0", 1], 2)
+        assert Tableau([[], [half]], [np.int64(0), 1], 2, name="m") == plain
+    floats = Tableau(np.array([[0, 0], [0.5, 0]]), ["0", 1], 2, name="m")
     assert floats.field == RR and floats != plain and floats.residual == 0
     root = sympy.sqrt(3) / 6
     c = ["1/2 - sqrt(3)/6", sympy.Rational(1, 2) + root]
-    method = Tableau("g", [["1/4", "1/4 - sqrt(3)/6"], [sympy.Rational(1, 4) + root, "1/4"]], ["1/2"] * 2, 4, c=c)
+    method = Tableau([["1/4", "1/4 - sqrt(3)/6"], [sympy.Rational(1, 4) + root, "1/4"]], ["1/2"] * 2, 4, c=c, name="g")
     assert method.a == tableau("gauss2").a and hash(method.a) == hash(tableau("gauss2").a)
-    assert Tableau("again", method.a, method.b, 4).field == number_field("sqrt(3)")
+    assert Tableau(method.a, method.b, 4, name="again").field == number_field("sqrt(3)")
 
 
 @pytest.mark.parametrize("name", ["rk45", "gauss2", "radau2a3", "gauss4", "dop853"])
@@ -311,7 +311,7 @@ def test_copies(name: str) -> None:
 @pytest.mark.parametrize("name", EXACT)
 def test_texts_make_the_same_tableau(name: str) -> None:
     method = tableau(name)
-    assert Tableau(name, order=method.order, **method.to_strings()) == method
+    assert Tableau(order=method.order, **method.to_strings(), name=name) == method
 
 
 def test_printing() -> None:
@@ -327,14 +327,14 @@ def test_printing() -> None:
 # -- floats --------------------------------------------------------------------------------------------------
 def test_float_tableaux_have_a_residual() -> None:
     a, b, c, embedded = tableau("rk45").to_numpy()
-    method = Tableau("floats", a, b, 5, c=c, embedded_b=embedded)
+    method = Tableau(a, b, 5, c=c, embedded_b=embedded, name="floats")
     assert 0 < method.residual < 1e-15 and not method.exact and method.embedded_order == 4
     off = b + 1e-10 * np.eye(7)[2]
     with pytest.raises(InputError, match=r"tree τ of order 1: weight 1\.0000000000999.*\(tolerance 1e-13\)"):
-        Tableau("off", a, off, 5)
-    assert 0.9e-10 < Tableau("off", a, off, 5, tolerance=1e-8).residual < 1.1e-10
+        Tableau(a, off, 5, name="off")
+    assert 0.9e-10 < Tableau(a, off, 5, tolerance=1e-8, name="off").residual < 1.1e-10
     with pytest.raises(InputError, match=r"c\[3\]"):
-        Tableau("off", a, b, 5, c=c + 1e-10 * np.eye(7)[3])
+        Tableau(a, b, 5, c=c + 1e-10 * np.eye(7)[3], name="off")
 
 
 def exact_fraction(x: np.longdouble) -> Fraction:
@@ -378,7 +378,7 @@ nonzero = small.filter(bool)
 @given(nonzero, nonzero, st.integers(0, 2))
 def test_all_methods_of_order_2_with_two_stages(alpha: Fraction, change: Fraction, where: int) -> None:
     def family(x: Fraction, y: Fraction, z: Fraction) -> Tableau:
-        return Tableau("family", [[], [x]], [y, z], 2)
+        return Tableau([[], [x]], [y, z], 2, name="family")
 
     values = [alpha, 1 - 1 / (2 * alpha), 1 / (2 * alpha)]
     assert family(*values).c == (0, QQ.convert(alpha))
@@ -394,7 +394,7 @@ def test_the_family_of_order_3_with_three_stages(u: Fraction, v: Fraction, chang
         u = u if u != Fraction(2, 3) else Fraction(1, 3)
 
     def family(a21: Fraction, a31: Fraction, a32: Fraction, *b: Fraction) -> Tableau:
-        return Tableau("family", [[], [a21], [a31, a32]], b, 3)
+        return Tableau([[], [a21], [a31, a32]], b, 3, name="family")
 
     b2, b3 = (3 * v - 2) / (6 * u * (v - u)), (2 - 3 * u) / (6 * v * (v - u))
     a32 = 1 / (6 * b3 * u)
@@ -458,12 +458,20 @@ def test_order_is_observed(name: str) -> None:
 @pytest.mark.parametrize("name", PAIRS)
 def test_order_of_the_embedded_method_is_observed(name: str) -> None:
     method = tableau(name)
-    embedded = Tableau("embedded", method.a, method.embedded_b, method.embedded_order or 0, field=method.field)
+    embedded = Tableau(method.a, method.embedded_b, method.embedded_order or 0, field=method.field, name="embedded")
     assert observed(embedded) == pytest.approx(embedded.order, abs=0.2)
 
 
 def test_order_that_is_not_there_is_not_observed() -> None:
     """The controls: rk4 without the condition of the tall tree, and rk4 whose stages read a wrong clock."""
-    spoiled = Tableau("spoiled", [[], ["1/2"], [0, "1/2"], [0, "1/10", "9/10"]], ["1/6", "1/3", "1/3", "1/6"], 3)
+    spoiled = Tableau([[], ["1/2"], [0, "1/2"], [0, "1/10", "9/10"]], ["1/6", "1/3", "1/3", "1/6"], 3, name="spoiled")
     assert observed(spoiled) == pytest.approx(3, abs=0.2)
     assert observed(tableau("rk4"), lambda t, y: slope_field(t + 1e-4, y)) == pytest.approx(0, abs=0.2)
+
+
+def test_the_order_is_found_where_none_is_claimed() -> None:
+    for name in ("euler", "heun", "rk4", "gauss2"):
+        method = tableau(name)
+        assert Tableau(method.a, method.b).order == method.order
+    with pytest.raises(InputError, match="order 1"):
+        Tableau([[0]], [2])  # not consistent: no order holds
