@@ -24,6 +24,8 @@ from liehom.exact.representations.highest_weight.characters import (
     character as character,
     decompose_character as decompose_character,
     dominant_character as dominant_character,
+    exterior_power_decomposition as exterior_power_decomposition,
+    symmetric_power_decomposition as symmetric_power_decomposition,
     tensor_product_decomposition as tensor_product_decomposition,
     weyl_dimension as weyl_dimension,
 )
@@ -42,7 +44,10 @@ from liehom.exact.representations.highest_weight.real_modules import (
     spinor_type as spinor_type,
 )
 from liehom.exact.representations.highest_weight.weights import (
+    casimir_eigenvalue as casimir_eigenvalue,
+    congruency_class as congruency_class,
     dual_weight as dual_weight,
+    dynkin_index as dynkin_index,
     frobenius_schur_indicator as frobenius_schur_indicator,
     weyl_orbit as weyl_orbit,
 )
