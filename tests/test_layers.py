@@ -46,7 +46,9 @@ ORDER: dict[str, list[str]] = {
         "liehom.exact.orbits": "conjugacy range cone types strata",
         "liehom.exact.pauli": "words span simple_ideals dynamical",
         "liehom.exact.representations": "invariants core rationalization highest_weight constructions analysis",
-        "liehom.exact.representations.analysis": "submodules isotypic decomposition symbolic weight_multiplicities",
+        "liehom.exact.representations.analysis": (
+            "submodules isotypic decomposition symbolic weight_multiplicities branching embeddings"
+        ),
         "liehom.exact.representations.core": "coordinates pair representation elements",
         "liehom.exact.representations.highest_weight": "weights characters highest_weight real_modules",
         "liehom.exact.representations.invariants": "intertwiners irreducibility representation_identity",

@@ -1,8 +1,17 @@
+from liehom.exact.representations.analysis.branching import (
+    Branching as Branching,
+    BranchingRule as BranchingRule,
+    BranchingTerm as BranchingTerm,
+)
 from liehom.exact.representations.analysis.decomposition import (
     Component as Component,
     Decomposition as Decomposition,
     HermitianForms as HermitianForms,
     IsotypicComponent as IsotypicComponent,
+)
+from liehom.exact.representations.analysis.embeddings import (
+    branching_rule as branching_rule,
+    maximal_subalgebras as maximal_subalgebras,
 )
 from liehom.exact.representations.analysis.submodules import MaximalSubmodules as MaximalSubmodules
 from liehom.exact.representations.analysis.symbolic import SymbolicIsotropy as SymbolicIsotropy

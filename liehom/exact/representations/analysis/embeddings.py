@@ -1,0 +1,559 @@
+"""Subalgebras of semisimple algebras and their branching rules: by name, by nodes, in a basis, and the maximal ones."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from fractions import Fraction
+from functools import lru_cache
+from itertools import combinations
+from typing import Any
+
+import flint
+import numpy as np
+
+from liehom.base.errors import CatalogError, InputError, InternalError, ShapeError, UndecidedError, displayed
+from liehom.exact.algebra.core.lie_algebra import LieAlgebra
+from liehom.exact.algebra.core.subalgebra import Subalgebra, complement_rows
+from liehom.exact.algebra.roots.real_form import RealForm, canonical_ideals
+from liehom.exact.algebra.roots.root_system import diagram_components, isomorphisms, parse_type, root_system
+from liehom.exact.algebra.structure.root_spaces import RootData, cartan_subalgebra, root_data
+from liehom.exact.representations.analysis.branching import (
+    BranchingRule,
+    ChargeRows,
+    NodeList,
+    Rows,
+    central_rows,
+    module_size,
+    modules_of_size,
+    nodes_in_order,
+    primitive,
+    regular_rule,
+    symmetric_images,
+    with_fewest_bars,
+)
+from liehom.exact.representations.analysis.submodules import semisimple_defect
+from liehom.exact.representations.highest_weight.characters import character
+from liehom.exact.representations.highest_weight.weights import (
+    Weight,
+    dual_weight,
+    frobenius_schur_indicator,
+    weight_space,
+)
+from liehom.exact.scalars.exact_field import ExactMatrix, as_exact
+from liehom.exact.scalars.joint_spectrum import coroot_pairings
+from liehom.exact.scalars.rational import working_precision
+
+LARGEST_VALUE = 1000
+"""Bound for the integer values of roots on an element of the centre."""
+CHARGE_BITS = 256  # precision of the roots from which these integers are read
+
+ChargeScale = int | Fraction | Sequence[int | Fraction] | Sequence[Sequence[int | Fraction]]
+
+
+def branching_rule(
+    algebra: LieAlgebra | str, subalgebra: Subalgebra | str | NodeList, *, charges: ChargeScale | None = None
+) -> BranchingRule:
+    """The rule by which modules of a semisimple algebra restrict to a reductive subalgebra, a `BranchingRule`.
+
+    Parameters
+    ----------
+    algebra : str or LieAlgebra
+        A type such as 'E6', the name of a real form such as 'su(5)', or a semisimple algebra in any basis.
+    subalgebra : str, sequence of int, sequence of sequences of int, or Subalgebra
+        For a type:
+
+        * a name such as 'so(10)+u(1)' or 'D5 + u(1)', of a maximal subalgebra or of a regular one; the factors of the rule
+          have its order;
+        * numbers of nodes of the Dynkin diagram, in Bourbaki's numbering from 1, and 0 for the lowest root: the regular
+          subalgebra with these simple roots and with all u(1) that commute with them. A list of lists, ``[[1, 2], [4]]``,
+          fixes the order of the factors.
+
+        For an algebra, a reductive subalgebra of it.
+    charges : number, sequence of numbers, or rows of numbers, optional
+        Factors for the charges of the u(1), or a square matrix that mixes them. By default the charges of all modules are
+        integers without a common divisor.
+
+    Raises
+    ------
+    CatalogError
+        If no subalgebra has the name, or several that are not conjugate.
+    InputError
+        If the subalgebra is not reductive in the algebra, or if its centre does not belong to a torus.
+
+    Notes
+    -----
+    Nodes of a diagram that a symmetry exchanges cannot be distinguished in an algebra in any basis. The rule of such a pair
+    numbers them in one way, for all highest weights that it is called with. A call with a representation does not depend on
+    this.
+
+    References
+    ----------
+    E. B. Dynkin, Semisimple subalgebras of semisimple Lie algebras, Amer. Math. Soc. Transl. 6 (1957) 111.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> rule = lh.branching_rule("E6", "so(10)+u(1)")
+    >>> print(rule("27"))
+    16_1 + 10_-2 + 1_4
+    >>> hypercharge = lh.branching_rule("su(5)", [[1, 2], [4]], charges="-1/6")
+    >>> print(hypercharge("5bar"), "and", hypercharge("10"))
+    (3bar,1)_1/3 + (1,2)_-1/2 and (3,2)_1/6 + (3bar,1)_-2/3 + (1,1)_1
+
+    A subalgebra in a basis, here the one that fixes a vector:
+
+    >>> g = lh.so(7)
+    >>> h = lh.spin_representation(7).isotropy([1] + [0] * 7)
+    >>> lh.branching_rule(h.algebra, h)
+    <branching rule B3 > G2, given, of index 1>
+    """
+    if isinstance(subalgebra, Subalgebra):
+        if not isinstance(algebra, LieAlgebra):
+            raise InputError(f"the algebra of {displayed(subalgebra)} is needed, got {displayed(algebra)}")
+        rule = _rule_of_pair(algebra.as_subalgebra(subalgebra))
+    else:
+        kind = _type_of(algebra)
+        rule = _rule_by_name(kind, subalgebra) if isinstance(subalgebra, str) else regular_rule(kind, subalgebra)
+    return rule if charges is None else replace(rule, charge_rows=_scaled(rule.charge_rows, charges))
+
+
+def _type_of(algebra: LieAlgebra | str) -> str:
+    """The type of an algebra, of the name of a real form, or of a type."""
+    if isinstance(algebra, LieAlgebra):
+        return algebra.semisimple_type()
+    if isinstance(algebra, str) and not re.fullmatch(r"[A-G0-9+ ]*", algebra):
+        return " + ".join(_types_named(algebra))
+    return " + ".join(letter + str(rank) for letter, rank in parse_type(algebra))
+
+
+def _types_named(name: str) -> list[str]:
+    """The types in a sum of names such as 'so(10)' or 'A2', in this order; u(1) is left out."""
+    kinds = []
+    for part in re.split(r"[+x×⊕]", name.replace(" ", "")):
+        if re.fullmatch(r"[A-G]\d+", part):
+            kinds += [kind for kind, _ in nodes_in_order(root_system(part))]
+        elif part.lower() not in ("u(1)", "so(2)", "u1"):
+            kinds += [RealForm.of_name(ideal).type for ideal in canonical_ideals(part)]
+    return kinds
+
+
+def _scaled(rows: ChargeRows, scale: Any) -> ChargeRows:
+    """The rows of charges times numbers, or times a matrix."""
+    count = len(rows)
+    scale = [scale] * count if isinstance(scale, (int, str, Fraction)) else list(scale)
+    matrix = [row if isinstance(row, (list, tuple)) else [row * (i == j) if row != str(row) else Fraction(row) * (i == j)
+              for j in range(count)] for i, row in enumerate(scale)]  # fmt: skip
+    try:
+        matrix = [[Fraction(x) for x in row] for row in matrix]
+    except (TypeError, ValueError) as error:
+        raise InputError(
+            f"charges are scaled by exact numbers such as Fraction(1, 6); got {displayed(scale)}"
+        ) from error
+    if any(len(row) != count for row in matrix) or len(matrix) != count:
+        raise ShapeError(
+            f"there are {count} u(1): give one factor, {count} factors, or {count} rows of {count} numbers"
+        )
+    product_ = np.array(matrix, dtype=object).reshape(count, count) @ np.array(rows, dtype=object).reshape(count, -1)
+    return tuple(map(tuple, product_.tolist()))
+
+
+# -- by name --------------------------------------------------------------------------------------------------
+def _rule_by_name(kind: str, name: str) -> BranchingRule:
+    """The rule for a maximal subalgebra with a name, else for the regular subalgebra with this name."""
+    roots, wanted = root_system(kind), _types_named(name)
+    count = len(re.findall(r"(?i)\bu\(1\)|\bso\(2\)", name))
+    simple = len(roots.components()) == 1
+    named = [rule for rule in (maximal_subalgebras(kind) if simple else []) if _has_name(rule, wanted, count)]
+    for most in (roots.rank, roots.rank - 1) if not named else ():
+        size = sum(int(part[1:]) for part in wanted)
+        nodes = range(int(not simple or most == roots.rank - 1), roots.rank + 1)
+        subsets = combinations(nodes, size) if size <= roots.rank else ()
+        regular = (regular_rule(kind, part) for part in subsets if _type_of_nodes(kind, part) == sorted(wanted))
+        named = [rule if count else replace(rule, charge_rows=()) for rule in regular]
+        named = [rule for rule in named if _has_name(rule, wanted, count)]
+    classes: dict[object, BranchingRule] = {}
+    for rule in named:
+        classes.setdefault(_signature(rule), rule)
+    if not classes:
+        known = ", ".join(rule.name for rule in maximal_subalgebras(kind)) if simple else "those by nodes"
+        raise CatalogError(f"{displayed(name)} is not a maximal or regular subalgebra of {kind}; maximal ones: {known}")
+    if len(classes) > 1:
+        indices = "; ".join(str(rule.embedding_indices) for rule in classes.values())
+        raise CatalogError(
+            f"{kind} has several subalgebras {displayed(name)}, of indices {indices}: give the nodes of the one you mean, "
+            "or take it from maximal_subalgebras"
+        )
+    return _in_order_of(next(iter(classes.values())), wanted)
+
+
+@lru_cache(maxsize=4096)
+def _type_of_nodes(kind: str, nodes: tuple[int, ...]) -> list[str]:
+    """The sorted types of the subdiagram of the extended diagram with given nodes."""
+    roots = root_system(kind)
+    vectors = [roots.simple_roots[i - 1] if i else tuple(-x for x in roots.highest_roots[0]) for i in nodes]
+    return [name for name, _ in diagram_components([[roots.pairing(a, b) for b in vectors] for a in vectors])]
+
+
+def _has_name(rule: BranchingRule, wanted: list[str], count: int) -> bool:
+    return sorted(rule.factors) == sorted(wanted) and len(rule.charge_rows) == count
+
+
+def _signature(rule: BranchingRule) -> object:
+    """What two rules have in common whose subalgebras an automorphism exchanges: the sizes in all small modules."""
+    roots = root_system(rule.type)
+    units = [tuple(int(i == j) for j in range(roots.rank)) for i in range(roots.rank)]
+    small = [w for w in units if module_size(rule.type, w) <= roots.rank + roots.number_of_roots] or units[:1]
+    semisimple = replace(rule, charge_rows=())
+    tables = [sorted((term.dimension, term.multiplicity) for term in semisimple(weight).terms) for weight in small]
+    return str(sorted(tables)), str(sorted(rule.embedding_indices))
+
+
+def _in_order_of(rule: BranchingRule, wanted: Sequence[str]) -> BranchingRule:
+    """The rule with its factors in a given order."""
+    blocks = [
+        (kind, [rule.projection[i] for i in part]) for kind, part in zip(rule.factors, rule.places(), strict=True)
+    ]
+    chosen = [blocks.pop(next(i for i, block in enumerate(blocks) if block[0] == kind)) for kind in wanted]
+    return replace(rule, factors=tuple(wanted), projection=tuple(row for _, rows in chosen for row in rows))
+
+
+# -- in a basis -----------------------------------------------------------------------------------------------
+# A Cartan subalgebra of the centralizer of t_h contains t_h and is a Cartan subalgebra of g. The roots of g and of h on it
+# are known as balls, and the values of the roots of g on the coroots of h are integers.
+
+
+def _rule_of_pair(h: Subalgebra) -> BranchingRule:
+    """The rule for a reductive subalgebra of a semisimple algebra."""
+    g, inner = h.algebra, h.as_algebra()
+    if not g.is_semisimple():
+        raise InputError(f"{g!r} is not semisimple; branch from its Levi factor, or from a type")
+    center = as_exact(inner.center().basis) @ as_exact(h.basis)
+    if not inner.is_reductive() or not all(semisimple_defect(g.ad(c)).is_zero() for c in _rows(center)):
+        raise InputError(f"{h!r} is not reductive in {g!r}: restricted modules need not be sums of irreducible ones")
+    to_g = as_exact(h.basis)
+    if center.nrows:
+        derived = inner.derived_subalgebra()
+        inner, to_g = derived.as_algebra(), as_exact(derived.basis) @ to_g
+    data = root_data(inner)
+    torus = g.field.stack_rows([as_exact(data.cartan.basis) @ to_g, center], g.dimension)
+    outer = g.centralizer(torus)
+    extended = as_exact(cartan_subalgebra(outer.as_algebra()).basis) @ as_exact(outer.basis)
+    cartan = Subalgebra(g, g.field.stack_rows([torus, complement_rows(extended, torus)], g.dimension), check=False)
+    whole = root_data(g, cartan, CHARGE_BITS if 0 < center.nrows < cartan.dimension - data.cartan.dimension else 0)
+    projection = _coroots(whole, data, torus)
+    components = diagram_components(whole.root_system.cartan)
+    kind = " + ".join(name for name, _ in components)
+    factors = tuple(name for name, _ in diagram_components(data.root_system.cartan))
+    order = [i for _, nodes in components for i in nodes]
+    projection = tuple(tuple(row[i] for i in order) for row in projection)
+    if len(projection) + center.nrows == len(order):
+        rows = central_rows(root_system(kind), projection)
+    else:
+        rows = tuple(_charge_row(whole, k, order) for k in range(len(projection), torus.nrows))
+    return BranchingRule(kind, factors, "given", projection, rows, whole)
+
+
+def _rows(matrix: ExactMatrix) -> list[ExactMatrix]:
+    return [matrix.select(rows=[i]) for i in range(matrix.nrows)]
+
+
+def _coroots(whole: RootData, data: RootData, torus: ExactMatrix) -> Rows:
+    """The simple coroots of h, in the order of its diagram, as combinations of those of g; the centre is orthogonal."""
+    rank = data.cartan.dimension
+    if not rank:
+        return ()
+    part = torus.select(rows=range(rank))
+    form = (part @ as_exact(whole.algebra.killing_form()) @ part.T).inverse()
+    bits = max(whole.spectrum.precision, data.spectrum.precision)
+    pairings = coroot_pairings([balls[:rank] for balls in whole.simple_values()], data.simple_values(), form, bits)
+    if pairings is None:
+        raise InternalError("the values of the roots on the coroots of the subalgebra are not separated")
+    inverse = whole.root_system.fundamental_weights()
+    order = [j for _, nodes in diagram_components(data.root_system.cartan) for j in nodes]
+    return tuple(
+        tuple(int(sum(x * row[j] for x, row in zip(line, pairings, strict=True))) for line in inverse) for j in order
+    )
+
+
+def _charge_row(whole: RootData, place: int, order: Sequence[int]) -> tuple[Fraction, ...]:
+    """An element c of the Cartan subalgebra on which the roots have rational ratios, in the simple coroots.
+
+    The values m on the roots are guessed from balls, up to a factor s. If ad c is annihilated by t and the t^2 - s^2 m^2, all
+    values are in s Z with known bounds, and different ratios of them are not closer than the balls are wide.
+    """
+    g, c = whole.algebra, as_exact(whole.cartan.basis).select(rows=[place])
+    balls = [row[place] for row in whole.simple_values()]
+    with working_precision(whole.spectrum.precision):
+        unit = max(balls, key=lambda x: float(x.abs_lower()))
+        ratios = [_ratio(x / unit) for x in balls]
+    values = primitive([x for x in ratios if x is not None])
+    if len(values) == len(ratios):
+        sizes = {abs(sum(a * int(m) for a, m in zip(root, values, strict=True))): root for root in whole.roots}
+        action = as_exact(g.ad(c))
+        total = sum(sum(a * int(m) for a, m in zip(root, values, strict=True)) ** 2 for root in whole.roots)
+        square, product = (action @ action).trace() / total, action
+        for size in filter(None, sizes):
+            product = product @ action @ action - product.scale(square * size**2)
+        if product.is_zero() and max(sizes) < LARGEST_VALUE:
+            row = [
+                sum(x * m for x, m in zip(line, values, strict=True))
+                for line in whole.root_system.fundamental_weights()
+            ]
+            return primitive([row[i] for i in order])
+    raise UndecidedError(
+        f"the roots of {g!r} are not seen to have rational ratios on {g.show(list(c.row(0)))} in the centre of the subalgebra, so there "
+        "are no integer charges; rho.restriction(h).highest_weights() has exact ones"
+    )
+
+
+def _ratio(ball: flint.acb) -> Fraction | None:
+    """The rational number with a denominator below `LARGEST_VALUE` in a narrow ball, if it is seen."""
+    narrow = ball.imag.contains(0) and ball.real.rad() < 1 / (4 * LARGEST_VALUE**2) and ball.imag.rad() < 1e-9
+    for d in range(1, LARGEST_VALUE) if narrow else ():
+        n = (ball.real + flint.arb(0, 1 / (4 * LARGEST_VALUE**2))) * d
+        if (m := n.unique_fmpz()) is not None:
+            return Fraction(int(m), d)
+    return None
+
+
+# -- maximal subalgebras --------------------------------------------------------------------------------------
+# Regular ones (Borel and de Siebenthal, Comment. Math. Helv. 23 (1949) 200): a node of the extended diagram with a prime mark
+# is left out, or node 0 and a node with mark 1; the latter are maximal among the reductive ones, with one u(1). Special ones of
+# so(N), sp(N), sl(N) (Dynkin, Maximal subgroups of the classical groups, 1952): sums so(p) + so(q) with odd p and q, tensor
+# products, so(N) and sp(N) in sl(N), and irreducible simple algebras, unless such an algebra is contained in a larger one. This
+# is decided by the branching rules of the larger one. Those of exceptional algebras are Dynkin's table of 1957.
+
+# Dynkin's special maximal subalgebras of the exceptional algebras, with the projections of weights. The rows were computed from
+# the restrictions of the smallest modules; the tests check them against the indices in his table.
+SPECIAL: dict[str, list[tuple[tuple[str, ...], Rows]]] = {
+    "G2": [(("A1",), ((6, 10),))],
+    "F4": [
+        (("A1",), ((22, 42, 30, 16),)),
+        (("A1", "G2"), ((4, 4, 4, 2), (1, 1, 0, 1), (0, 1, 1, 0))),
+    ],
+    "E6": [
+        (("F4",), ((0, 1, 0, 0, 0, 0), (0, 0, 0, 1, 0, 0), (0, 0, 1, 0, 1, 0), (1, 0, 0, 0, 0, 1))),
+        (("C4",), ((0, 0, 1, 2, 1, 0), (1, 0, 0, 0, 0, 1), (0, 0, 1, 0, 1, 0), (0, 1, 0, 1, 0, 0))),
+        (("A2", "G2"), ((0, 1, 1, 1, 2, 1), (1, 1, 0, 1, 0, 0), (1, 1, 2, 1, 0, 1), (0, 0, 0, 1, 1, 0))),
+        (("G2",), ((2, 1, 2, 5, 2, 2), (0, 1, 1, 0, 1, 0))),
+        (("A2",), ((2, 4, 5, 5, 5, 2), (2, 1, 2, 5, 2, 2))),
+    ],
+    "E7": [
+        (
+            ("G2", "C3"),
+            (
+                *((1, 1, 2, 1, 2, 2, 1), (0, 0, 0, 1, 0, 0, 0)),
+                *((0, 1, 1, 1, 0, 0, 1), (1, 1, 0, 1, 1, 1, 0), (0, 0, 1, 1, 1, 0, 0)),
+            ),
+        ),
+        (
+            ("A1", "F4"),
+            (
+                (0, 1, 0, 2, 1, 2, 1),
+                *((1, 0, 0, 0, 0, 0, 0), (0, 0, 1, 1, 0, 0, 0), (0, 1, 0, 0, 1, 1, 0), (0, 0, 0, 1, 1, 0, 1)),
+            ),
+        ),
+        (("A1", "G2"), ((2, 3, 4, 4, 5, 4, 1), (2, 1, 2, 4, 4, 1, 0), (0, 1, 1, 1, 0, 1, 1))),
+        (("A2",), ((4, 7, 9, 11, 10, 6, 6), (4, 4, 6, 11, 7, 6, 0))),
+        (("A1", "A1"), ((8, 10, 14, 18, 16, 12, 6), (2, 5, 6, 12, 7, 4, 3))),
+        (("A1",), ((26, 37, 50, 72, 57, 40, 21),)),
+        (("A1",), ((34, 49, 66, 96, 75, 52, 27),)),
+    ],
+    "E8": [
+        (
+            ("G2", "F4"),
+            (
+                *((1, 1, 2, 1, 2, 2, 1, 1), (0, 0, 0, 1, 0, 0, 0, 0)),
+                *((0, 0, 0, 0, 0, 1, 1, 0), (0, 0, 1, 1, 1, 0, 0, 0)),
+                *((1, 1, 0, 1, 1, 1, 0, 0), (0, 1, 1, 1, 0, 0, 1, 1)),
+            ),
+        ),
+        (("A1", "A2"), ((8, 12, 16, 22, 16, 14, 10, 6), (2, 3, 4, 8, 6, 4, 4, 1), (2, 3, 4, 5, 6, 4, 1, 1))),
+        (("B2",), ((4, 6, 8, 9, 8, 7, 3, 3), (4, 6, 8, 16, 12, 8, 8, 2))),
+        (("A1",), ((60, 88, 118, 174, 142, 108, 74, 38),)),
+        (("A1",), ((72, 106, 142, 210, 172, 132, 90, 46),)),
+        (("A1",), ((92, 136, 182, 270, 220, 168, 114, 58),)),
+    ],
+}
+
+
+def maximal_subalgebras(algebra: LieAlgebra | str) -> tuple[BranchingRule, ...]:
+    """The branching rules for the maximal reductive subalgebras of a complex simple algebra, up to its automorphisms.
+
+    Parameters
+    ----------
+    algebra : str or LieAlgebra
+        A type such as 'E6', the name of a real form such as 'so(10)', or a simple algebra, of which the type is taken.
+
+    Returns
+    -------
+    tuple of BranchingRule
+        Regular semisimple ones, regular ones with a u(1), then special ones; each with its Dynkin indices.
+
+    Notes
+    -----
+    The subalgebras with a u(1) are maximal among the reductive ones, and are contained in a parabolic subalgebra. The real
+    maximal subalgebras of real forms are in `liehom.atlas`.
+
+    References
+    ----------
+    E. B. Dynkin, Semisimple subalgebras of semisimple Lie algebras, Amer. Math. Soc. Transl. 6 (1957) 111, tables 12 and
+    39; Maximal subgroups of the classical groups, ibid. 245.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> for rule in lh.maximal_subalgebras("A4"):
+    ...     print(rule.name, rule.embedding_indices, rule.kind, "5 =", rule("5"))
+    A3 + u(1) (1,) regular 5 = 4_1 + 1_-4
+    A1 + A2 + u(1) (1, 1) regular 5 = (1,3)_2 + (2,1)_-3
+    B2 (2,) special 5 = 5
+    """
+    kind = _type_of(algebra)
+    components = root_system(kind).components()
+    if len(components) != 1:
+        raise InputError(f"{kind} is not the type of a simple algebra; take its components, such as 'A2', in turn")
+    return _maximal(components[0][0] if kind[0] in "BD" and kind[1:] in ("1", "3") else kind)
+
+
+@lru_cache(maxsize=64)
+def _maximal(kind: str) -> tuple[BranchingRule, ...]:
+    roots = root_system(kind)
+    marks = [1, *roots.highest_roots[0]]
+    lowest = tuple(-x for x in roots.highest_roots[0])
+    vectors = [lowest, *roots.simple_roots]
+    cartan = [[roots.pairing(a, b) for b in vectors] for a in vectors]
+    symmetries = isomorphisms(cartan, cartan)
+    nodes = range(1, roots.rank + 1)
+    prime = [i for i in nodes if marks[i] in (2, 3, 5) and i == min(p[i] for p in symmetries)]
+    pairs = {min(tuple(sorted((p[0], p[i]))) for p in symmetries): i for i in reversed(nodes) if marks[i] == 1}
+    whole = [regular_rule(kind, [k for k in range(roots.rank + 1) if k != i]) for i in prime]
+    levi = [regular_rule(kind, [k for k in nodes if k != i]) for i in sorted(pairs.values())]
+    if kind in SPECIAL:
+        special = [with_fewest_bars(BranchingRule(kind, key, "special", rows)) for key, rows in SPECIAL[kind]]
+    else:
+        special = list(_special(kind)) if kind[0] in "ABCD" else []
+    return (*whole, *levi, *special)
+
+
+Module = tuple[tuple[str, ...], list[tuple[Weight, ...]]]
+"""Simple types, and the parts of a module: for each part one weight for each type."""
+
+
+def _special(kind: str) -> Iterator[BranchingRule]:
+    """The special maximal subalgebras of a classical simple algebra, in its module of dimension N."""
+    letter, n = kind[0], int(kind[1:])
+    size = {"A": n + 1, "B": 2 * n + 1, "C": 2 * n, "D": 2 * n}[letter]
+    if letter == "A":
+        yield from (
+            _rule_of_module(kind, _vector(x, size))
+            for x in ("so", "sp")
+            if size > 2 and (x == "so" or size % 2 == 0 and size > 2)
+        )
+    if letter == "D":
+        yield from (_rule_of_module(kind, _sum(_vector("so", p), _vector("so", size - p))) for p in range(1, n + 1, 2))
+    products = [
+        _tensor(_vector(x, p), _vector(y, size // p)) for x, y, p in _tensor_factors(letter, size) if kind != "D4"
+    ]
+    simple = _irreducible(kind, size)
+    larger = {image for pair in simple for image in _images(*pair)}
+    yield from (_rule_of_module(kind, module) for module in products if (module[0], module[1][0]) not in larger)
+    for name, weight in simple:
+        if ((name,), (weight,)) not in larger and (kind, name) != ("D4", "B3"):
+            yield _rule_of_module(kind, ((name,), [(weight,)]))
+
+
+def _tensor_factors(letter: str, size: int) -> Iterator[tuple[str, str, int]]:
+    """The kinds of the two factors, and the size of the first, of the maximal tensor products; so(4) is a product itself."""
+    for p in range(2, size):
+        q, rest = divmod(size, p)
+        if rest or q < 2:
+            continue
+        if letter == "A" and p <= q and size > 4:
+            yield "sl", "sl", p
+        if letter in "BD" and 3 <= p <= q and 4 not in (p, q):
+            yield "so", "so", p
+        if letter == "D" and p <= q and p % 2 == q % 2 == 0 and size > 4:
+            yield "sp", "sp", p
+        if letter == "C" and p % 2 == 0 and q >= 3 and (q != 4 or p == 2):
+            yield "sp", "so", p
+
+
+def _vector(series: str, size: int) -> Module:
+    """The smallest module of sl, sp or so; so(4) has two simple ideals, and so(1) has none."""
+    small = {("so", 1): ((), ()), ("so", 3): (("A1",), ((2,),)), ("so", 4): (("A1", "A1"), ((1,), (1,)))}
+    small |= {("so", 5): (("B2",), ((1, 0),)), ("so", 6): (("A3",), ((0, 1, 0),)), ("sp", 2): (("A1",), ((1,),))}
+    small |= {("sp", 4): (("B2",), ((0, 1),))}
+    if (series, size) in small:
+        kinds, weights = small[series, size]
+        return kinds, [weights]
+    letter, rank = {"sl": ("A", size - 1), "sp": ("C", size // 2)}.get(series, ("BD"[size % 2 == 0], size // 2))
+    return (f"{letter}{rank}",), [((1, *[0] * (rank - 1)),)]
+
+
+def _tensor(left: Module, right: Module) -> Module:
+    return (*left[0], *right[0]), [(*a, *b) for a in left[1] for b in right[1]]
+
+
+def _sum(left: Module, right: Module) -> Module:
+    trivial = [tuple((0,) * int(kind[1:]) for kind in kinds) for kinds in (left[0], right[0])]
+    return (*left[0], *right[0]), [*((*a, *trivial[1]) for a in left[1]), *((*trivial[0], *b) for b in right[1])]
+
+
+def _irreducible(kind: str, size: int) -> list[tuple[str, Weight]]:
+    """Proper simple subalgebras of a classical algebra that act irreducibly on C^size, one for each up to automorphisms."""
+    rank, indicator = int(kind[1:]), {"A": 0, "C": -1}.get(kind[0], 1)
+    names = [
+        f"{x}{r}" for r in range(1, rank + 1) for x, least in (("A", 1), ("B", 2), ("C", 3), ("D", 4)) if r >= least
+    ]
+    names += [name for name in ("G2", "F4", "E6", "E7", "E8") if int(name[1:]) <= rank]
+    found = []
+    for name in names:
+        roots = root_system(name)
+        if roots.rank + roots.number_of_roots < root_system(kind).rank + root_system(kind).number_of_roots:
+            for weight in modules_of_size(name, size):
+                same = {x for image in symmetric_images(name, weight) for x in (image, dual_weight(name, image))}
+                if weight == max(same) and frobenius_schur_indicator(name, weight) == indicator:
+                    found.append((name, weight))
+    return found
+
+
+def _images(kind: str, weight: Weight) -> Iterator[tuple[tuple[str, ...], tuple[Weight, ...]]]:
+    """The proper subalgebras of a simple algebra that act irreducibly on a module, and their highest weights."""
+    for rule in _maximal(kind):
+        terms = rule(weight).terms
+        if len(terms) == 1 and terms[0].multiplicity == 1 and not rule.charge_rows:
+            (term,) = terms
+            tops = [
+                max(x for y in symmetric_images(name, top) for x in (y, dual_weight(name, y)))
+                for name, top in zip(rule.factors, term.highest_weights, strict=True)
+            ]
+            yield rule.factors, tuple(tops)
+            if len(tops) == 1:
+                yield from _images(rule.factors[0], tops[0])
+
+
+def _rule_of_module(kind: str, module: Module) -> BranchingRule:
+    """The rule of a special subalgebra of a classical algebra, from the restriction of the smallest module.
+
+    Its weights are e_1, ..., e_n with or without their negatives, in the order of a linear form that is positive on the positive
+    roots of both algebras. So e_i goes to the weight number i of the restriction.
+    """
+    factors, parts = module
+    space = weight_space(" + ".join(factors))
+    weights = [
+        mu
+        for part in parts
+        for mu, m in character(" + ".join(factors), [x for w in part for x in w]).items()
+        for _ in range(m)
+    ]
+    weights.sort(key=lambda mu: (space.height(mu), mu), reverse=True)
+    n = int(kind[1:])
+    sums = np.cumsum(np.array(weights[:n], dtype=object).reshape(n, -1), axis=0)
+    if kind[0] in "BD":
+        if kind[0] == "D":
+            sums[n - 2] = (sums[n - 2] - np.array(weights[n - 1], dtype=object)) // 2
+        sums[n - 1] = sums[n - 1] // 2
+    return with_fewest_bars(BranchingRule(kind, factors, "special", tuple(map(tuple, sums.T.tolist()))))
