@@ -1,9 +1,9 @@
 """Branching rules: irreducible modules of a semisimple algebra restricted to a reductive subalgebra, by weights.
 
 Let t_h be a Cartan subalgebra of h in a Cartan subalgebra t_g of g. The simple coroots of h are integer combinations of
-those of g, beta_j^vee = sum_i p_ji alpha_i^vee, so the matrix p maps weights of g in fundamental coordinates to weights of
-h. An element of the centre of h gives a further row, whose values are the charges. The weights of a module are mapped by
-p, and the highest weights of h are peeled off.
+those of g, beta_j^vee = sum_i p_ji alpha_i^vee, so the matrix p maps weights of g in fundamental coordinates to weights
+of h. An element of the centre of h gives a further row, whose values are the charges. The weights of a module are
+mapped by p, and the highest weights of h are peeled off.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import lru_cache
-from itertools import combinations
+from itertools import combinations, pairwise
 from math import gcd, lcm, prod
 from typing import final
 
@@ -34,7 +34,12 @@ from liehom.exact.algebra.roots.root_system import (
 from liehom.exact.algebra.structure.root_spaces import RootData
 from liehom.exact.representations.analysis.weight_multiplicities import weights_on
 from liehom.exact.representations.core.representation import Representation
-from liehom.exact.representations.highest_weight.characters import character, irreducible_parts, weights_up_to
+from liehom.exact.representations.highest_weight.characters import (
+    character,
+    irreducible_parts,
+    weights_up_to,
+    weyl_dimension,
+)
 from liehom.exact.representations.highest_weight.weights import (
     Weight,
     congruency_class,
@@ -48,13 +53,13 @@ ChargeRows = tuple[tuple[Fraction, ...], ...]
 """Rows of numbers, one number for each node of g."""
 
 # -- names of modules -----------------------------------------------------------------------------------------
-# Modules are named by their dimension, as physicists do. Of two dual ones the unbarred has the smaller congruency class,
-# and for equal classes the larger weight in lexicographic order. Primes count the modules of one dimension by Dynkin's
-# index, where modules that duality or a symmetry of the diagram exchanges count once. The letters s and c distinguish
-# modules of D_n, n even, that the symmetry exchanges, and v, s, c those of D4. This follows the tables of LieART
-# (arXiv:1912.10969).
+# Modules are named by their dimension, as physicists do. Of two dual ones the unbarred has the smaller congruency
+# class, and for equal classes the larger weight in lexicographic order. Primes count the modules of one dimension by
+# Dynkin's index, where modules that duality or a symmetry of the diagram exchanges count once. The letters s and c
+# distinguish modules of D_n, n even, that the symmetry exchanges, and v, s, c those of D4. This follows the tables of
+# LieART (arXiv:1912.10969).
 
-LARGEST_NAMED = 100_000
+LARGEST_NAMED = 10_000_000
 """Above this dimension a module has its weight in its name instead of primes."""
 
 
@@ -72,7 +77,9 @@ def module_name(kind: str, weight: Weight) -> str:
         plain = max(orbit)
     else:
         plain = _unbarred(kind, weight, dual)
-    classes = {mu if dual_weight(kind, mu) != mu else max(symmetric_images(kind, mu)) for mu in modules_of_size(kind, size)}
+    classes = {
+        mu if dual_weight(kind, mu) != mu else max(symmetric_images(kind, mu)) for mu in modules_of_size(kind, size)
+    }
     same = {_unbarred(kind, mu, dual_weight(kind, mu)) for mu in classes}
     primes = sorted(same, key=lambda mu: (dynkin_index(kind, mu), tuple(-x for x in mu))).index(plain)
     return f"{size}{'bar' if dual != weight != plain else ''}{chr(39) * primes}{letters}"
@@ -89,11 +96,8 @@ def _triality_letters(weight: Weight) -> str:
 
 @lru_cache(maxsize=4096)
 def module_size(kind: str, weight: Weight) -> int:
-    space = weight_space(kind)
-    rho = (1,) * space.rank
-    shifted = tuple(x + 1 for x in weight)
-    roots = space.positive_roots
-    return prod(space.product(shifted, a) for a in roots) // prod(space.product(rho, a) for a in roots)
+    """The dimension of an irreducible module."""
+    return weyl_dimension(kind, weight)
 
 
 @lru_cache(maxsize=256)
@@ -231,8 +235,8 @@ class Branching(DisplayedTable):
 class BranchingRule:
     """How modules of a semisimple algebra g restrict to a reductive subalgebra h; made by `branching_rule`.
 
-    Call it with a highest weight in fundamental coordinates, with the name of a module such as '27' or '16bar', or, if it
-    was made from algebras, with a representation of g. It returns a `Branching`.
+    Call it with a highest weight in fundamental coordinates, with the name of a module such as '27' or '16bar', or, if
+    it was made from algebras, with a representation of g. It returns a `Branching`.
 
     Attributes
     ----------
@@ -243,8 +247,8 @@ class BranchingRule:
     kind : str
         'regular' or 'special' in Dynkin's sense; 'given' for a subalgebra in a basis.
     projection : tuple of tuples of int
-        The matrix on weights, one row for each simple coroot of h, in the order of `factors`. Its columns are the nodes of
-        g in the order of ``liehom.root_system(type)``.
+        The matrix on weights, one row for each simple coroot of h, in the order of `factors`. Its columns are the nodes
+        of g in the order of ``liehom.root_system(type)``.
     charge_rows : tuple of tuples of Fraction
         One further row for each u(1).
 
@@ -255,7 +259,7 @@ class BranchingRule:
     >>> rule
     <branching rule G2 > A2, regular, of index 1>
     >>> rule.projection
-    ((1, 1), (0, 1))
+    ((-1, -2), (0, 1))
     >>> print(rule([1, 0]), "and", rule("14"))
     3 + 3bar + 1 and 8 + 3 + 3bar
     """
@@ -339,7 +343,7 @@ class BranchingRule:
     def places(self) -> list[range]:
         """The rows of the projection that belong to each factor."""
         ends = np.cumsum([0, *(int(kind[1:]) for kind in self.factors)]).tolist()
-        return [range(a, b) for a, b in zip(ends, ends[1:], strict=False)]
+        return [range(a, b) for a, b in pairwise(ends)]
 
     def restricted(self, weights: Mapping[Weight, int]) -> Branching:
         """The terms of a character."""
@@ -363,7 +367,7 @@ class BranchingRule:
     def _named(self, name: str) -> Weight:
         """The highest weight of the module with a name."""
         (kind,) = parts if len(parts := parse_type(self.type)) == 1 else (None,)
-        size = re.match(r"\d{1,6}(?!\d)", name)
+        size = re.match(r"\d{1,8}(?!\d)", name)
         if kind is not None and size and int(size[0]) <= LARGEST_NAMED:
             same = [mu for mu in modules_of_size(self.type, int(size[0])) if module_name(self.type, mu) == name]
             if same:
@@ -399,14 +403,14 @@ def _coroot_norm(roots: RootSystem, nodes: Sequence[int], row: Sequence[int]) ->
 
 
 # -- regular subalgebras --------------------------------------------------------------------------------------
-# A regular subalgebra is normalized by a Cartan subalgebra of g. Its roots are roots of g, and its simple roots are nodes of
-# the diagram or of the extended diagram, which may be extended again (Borel and de Siebenthal).
+# A regular subalgebra is normalized by a Cartan subalgebra of g. Its roots are roots of g, and its simple roots are
+# nodes of the diagram or of the extended diagram, which may be extended again (Borel and de Siebenthal).
 
 NodeList = Sequence[int] | Sequence[Sequence[int]]
 
 
 def regular_rule(kind: str, nodes: NodeList) -> BranchingRule:
-    """The rule for the regular subalgebra whose simple roots are nodes of the extended diagram, 0 for the lowest root."""
+    """The rule for the regular subalgebra with given nodes of the extended diagram, 0 for the lowest root."""
     roots = root_system(kind)
     lists = [list(x) if isinstance(x, Sequence) else [x] for x in nodes]
     flat = [i for part in lists for i in part]
@@ -418,7 +422,7 @@ def regular_rule(kind: str, nodes: NodeList) -> BranchingRule:
         raise InputError(f"node 0 is the lowest root of a simple algebra, and {kind} is not simple")
     vectors = {i: roots.simple_roots[i - 1] if i else tuple(-x for x in roots.highest_roots[0]) for i in flat}
     parts: list[tuple[str, list[Root]]] = []
-    for part in [flat] if len(lists) == len(flat) else lists:
+    for part in lists if any(isinstance(x, Sequence) for x in nodes) else [flat]:
         cartan = [[roots.pairing(vectors[i], vectors[j]) for j in part] for i in part]
         parts += [(name, [vectors[part[i]] for i in places]) for name, places in diagram_components(cartan)]
     if any(roots.pairing(a, b) for (_, x), (_, y) in combinations(parts, 2) for a in x for b in y):

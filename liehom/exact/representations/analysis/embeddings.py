@@ -8,7 +8,6 @@ from dataclasses import replace
 from fractions import Fraction
 from functools import lru_cache
 from itertools import combinations
-from typing import Any
 
 import flint
 import numpy as np
@@ -49,7 +48,7 @@ LARGEST_VALUE = 1000
 """Bound for the integer values of roots on an element of the centre."""
 CHARGE_BITS = 256  # precision of the roots from which these integers are read
 
-ChargeScale = int | Fraction | Sequence[int | Fraction] | Sequence[Sequence[int | Fraction]]
+ChargeScale = int | str | Fraction | Sequence[int | str | Fraction] | Sequence[Sequence[int | str | Fraction]]
 
 
 def branching_rule(
@@ -64,16 +63,17 @@ def branching_rule(
     subalgebra : str, sequence of int, sequence of sequences of int, or Subalgebra
         For a type:
 
-        * a name such as 'so(10)+u(1)' or 'D5 + u(1)', of a maximal subalgebra or of a regular one; the factors of the rule
+        * a name such as 'so(10)+u(1)' or 'D5 + u(1)', of a maximal subalgebra or of a regular one; the factors of the
+        rule
           have its order;
         * numbers of nodes of the Dynkin diagram, in Bourbaki's numbering from 1, and 0 for the lowest root: the regular
-          subalgebra with these simple roots and with all u(1) that commute with them. A list of lists, ``[[1, 2], [4]]``,
-          fixes the order of the factors.
+          subalgebra with these simple roots and with all u(1) that commute with them. A list of lists, ``[[1, 2],
+          [4]]``, fixes the order of the factors.
 
         For an algebra, a reductive subalgebra of it.
     charges : number, sequence of numbers, or rows of numbers, optional
-        Factors for the charges of the u(1), or a square matrix that mixes them. By default the charges of all modules are
-        integers without a common divisor.
+        Factors for the charges of the u(1), or a square matrix that mixes them. By default the charges of all modules
+        are integers without a common divisor.
 
     Raises
     ------
@@ -84,9 +84,9 @@ def branching_rule(
 
     Notes
     -----
-    Nodes of a diagram that a symmetry exchanges cannot be distinguished in an algebra in any basis. The rule of such a pair
-    numbers them in one way, for all highest weights that it is called with. A call with a representation does not depend on
-    this.
+    Nodes of a diagram that a symmetry exchanges cannot be distinguished in an algebra in any basis. The rule of such a
+    pair numbers them in one way, for all highest weights that it is called with. A call with a representation does not
+    depend on this.
 
     References
     ----------
@@ -139,24 +139,28 @@ def _types_named(name: str) -> list[str]:
     return kinds
 
 
-def _scaled(rows: ChargeRows, scale: Any) -> ChargeRows:
+def _scaled(rows: ChargeRows, scale: object) -> ChargeRows:
     """The rows of charges times numbers, or times a matrix."""
     count = len(rows)
-    scale = [scale] * count if isinstance(scale, (int, str, Fraction)) else list(scale)
-    matrix = [row if isinstance(row, (list, tuple)) else [row * (i == j) if row != str(row) else Fraction(row) * (i == j)
-              for j in range(count)] for i, row in enumerate(scale)]  # fmt: skip
+    given: list[object] = list(scale) if isinstance(scale, Sequence) and not isinstance(scale, str) else [scale] * count
+    if not any(isinstance(row, Sequence) and not isinstance(row, str) for row in given):
+        given = [[x if i == j else 0 for j in range(count)] for i, x in enumerate(given)]
     try:
-        matrix = [[Fraction(x) for x in row] for row in matrix]
-    except (TypeError, ValueError) as error:
-        raise InputError(
-            f"charges are scaled by exact numbers such as Fraction(1, 6); got {displayed(scale)}"
-        ) from error
+        matrix = [[_exact(x) for x in row] for row in given]  # type: ignore[attr-defined]  # a row, or TypeError
+    except (TypeError, ValueError, ZeroDivisionError) as error:
+        raise InputError(f"charges are scaled by exact numbers such as '1/6'; got {displayed(scale)}") from error
     if any(len(row) != count for row in matrix) or len(matrix) != count:
         raise ShapeError(
             f"there are {count} u(1): give one factor, {count} factors, or {count} rows of {count} numbers"
         )
-    product_ = np.array(matrix, dtype=object).reshape(count, count) @ np.array(rows, dtype=object).reshape(count, -1)
-    return tuple(map(tuple, product_.tolist()))
+    scaled = np.array(matrix, dtype=object).reshape(count, count) @ np.array(rows, dtype=object).reshape(count, -1)
+    return tuple(map(tuple, scaled.tolist()))
+
+
+def _exact(value: int | Fraction | str) -> Fraction:
+    if isinstance(value, float):
+        raise TypeError("a float is not exact")
+    return Fraction(value)
 
 
 # -- by name --------------------------------------------------------------------------------------------------
@@ -182,8 +186,8 @@ def _rule_by_name(kind: str, name: str) -> BranchingRule:
     if len(classes) > 1:
         indices = "; ".join(str(rule.embedding_indices) for rule in classes.values())
         raise CatalogError(
-            f"{kind} has several subalgebras {displayed(name)}, of indices {indices}: give the nodes of the one you mean, "
-            "or take it from maximal_subalgebras"
+            f"{kind} has several subalgebras {displayed(name)}, of indices {indices}: give the nodes of the one you "
+            "mean, or take it from maximal_subalgebras"
         )
     return _in_order_of(next(iter(classes.values())), wanted)
 
@@ -220,8 +224,8 @@ def _in_order_of(rule: BranchingRule, wanted: Sequence[str]) -> BranchingRule:
 
 
 # -- in a basis -----------------------------------------------------------------------------------------------
-# A Cartan subalgebra of the centralizer of t_h contains t_h and is a Cartan subalgebra of g. The roots of g and of h on it
-# are known as balls, and the values of the roots of g on the coroots of h are integers.
+# A Cartan subalgebra of the centralizer of t_h contains t_h and is a Cartan subalgebra of g. The roots of g and of h on
+# it are known as balls, and the values of the roots of g on the coroots of h are integers.
 
 
 def _rule_of_pair(h: Subalgebra) -> BranchingRule:
@@ -280,8 +284,8 @@ def _coroots(whole: RootData, data: RootData, torus: ExactMatrix) -> Rows:
 def _charge_row(whole: RootData, place: int, order: Sequence[int]) -> tuple[Fraction, ...]:
     """An element c of the Cartan subalgebra on which the roots have rational ratios, in the simple coroots.
 
-    The values m on the roots are guessed from balls, up to a factor s. If ad c is annihilated by t and the t^2 - s^2 m^2, all
-    values are in s Z with known bounds, and different ratios of them are not closer than the balls are wide.
+    The values m on the roots are guessed from balls, up to a factor s. If ad c is annihilated by t and the t^2 - s^2
+    m^2, all values are in s Z with known bounds, and different ratios of them are not closer than the balls are wide.
     """
     g, c = whole.algebra, as_exact(whole.cartan.basis).select(rows=[place])
     balls = [row[place] for row in whole.simple_values()]
@@ -297,14 +301,12 @@ def _charge_row(whole: RootData, place: int, order: Sequence[int]) -> tuple[Frac
         for size in filter(None, sizes):
             product = product @ action @ action - product.scale(square * size**2)
         if product.is_zero() and max(sizes) < LARGEST_VALUE:
-            row = [
-                sum(x * m for x, m in zip(line, values, strict=True))
-                for line in whole.root_system.fundamental_weights()
-            ]
+            inverse = whole.root_system.fundamental_weights()
+            row = [sum(x * m for x, m in zip(line, values, strict=True)) for line in inverse]
             return primitive([row[i] for i in order])
     raise UndecidedError(
-        f"the roots of {g!r} are not seen to have rational ratios on {g.show(list(c.row(0)))} in the centre of the subalgebra, so there "
-        "are no integer charges; rho.restriction(h).highest_weights() has exact ones"
+        f"no rational ratios of the roots were found on {g.show(list(c.row(0)))} in the centre of the subalgebra, so "
+        "there are no integer charges; rho.restriction(h).highest_weights() has exact ones"
     )
 
 
@@ -319,14 +321,16 @@ def _ratio(ball: flint.acb) -> Fraction | None:
 
 
 # -- maximal subalgebras --------------------------------------------------------------------------------------
-# Regular ones (Borel and de Siebenthal, Comment. Math. Helv. 23 (1949) 200): a node of the extended diagram with a prime mark
-# is left out, or node 0 and a node with mark 1; the latter are maximal among the reductive ones, with one u(1). Special ones of
-# so(N), sp(N), sl(N) (Dynkin, Maximal subgroups of the classical groups, 1952): sums so(p) + so(q) with odd p and q, tensor
-# products, so(N) and sp(N) in sl(N), and irreducible simple algebras, unless such an algebra is contained in a larger one. This
-# is decided by the branching rules of the larger one. Those of exceptional algebras are Dynkin's table of 1957.
+# Regular ones (Borel and de Siebenthal, Comment. Math. Helv. 23 (1949) 200): a node of the extended diagram with a
+# prime mark is left out, or node 0 and a node with mark 1; the latter are maximal among the reductive ones, with one
+# u(1). Special ones of so(N), sp(N), sl(N) (Dynkin, Maximal subgroups of the classical groups, 1952): sums so(p) +
+# so(q) with odd p and q, tensor products, so(N) and sp(N) in sl(N), and irreducible simple algebras, unless such an
+# algebra is contained in a larger one, which the branching rules of the larger one decide.
+#
+# The special ones of the exceptional algebras (Dynkin, 1957) are listed with their projections of weights. Those of the
+# A1 are the diagrams of Testerman, with 2 at each node, except for 0 at node 4 or at the nodes 4 and 6. The others are
+# the solutions of the restrictions of the smallest module.
 
-# Dynkin's special maximal subalgebras of the exceptional algebras, with the projections of weights. The rows were computed from
-# the restrictions of the smallest modules; the tests check them against the indices in his table.
 SPECIAL: dict[str, list[tuple[tuple[str, ...], Rows]]] = {
     "G2": [(("A1",), ((6, 10),))],
     "F4": [
@@ -394,13 +398,13 @@ def maximal_subalgebras(algebra: LieAlgebra | str) -> tuple[BranchingRule, ...]:
 
     Notes
     -----
-    The subalgebras with a u(1) are maximal among the reductive ones, and are contained in a parabolic subalgebra. The real
-    maximal subalgebras of real forms are in `liehom.atlas`.
+    The subalgebras with a u(1) are maximal among the reductive ones, and are contained in a parabolic subalgebra. The
+    real maximal subalgebras of real forms are in `liehom.atlas`.
 
     References
     ----------
-    E. B. Dynkin, Semisimple subalgebras of semisimple Lie algebras, Amer. Math. Soc. Transl. 6 (1957) 111, tables 12 and
-    39; Maximal subgroups of the classical groups, ibid. 245.
+    E. B. Dynkin, Semisimple subalgebras of semisimple Lie algebras, Amer. Math. Soc. Transl. 6 (1957) 111, tables 12
+    and 39; Maximal subgroups of the classical groups, ibid. 245.
 
     Examples
     --------
@@ -450,7 +454,7 @@ def _special(kind: str) -> Iterator[BranchingRule]:
         yield from (
             _rule_of_module(kind, _vector(x, size))
             for x in ("so", "sp")
-            if size > 2 and (x == "so" or size % 2 == 0 and size > 2)
+            if size > 2 and (x == "so" or (size % 2 == 0 and size > 2))
         )
     if letter == "D":
         yield from (_rule_of_module(kind, _sum(_vector("so", p), _vector("so", size - p))) for p in range(1, n + 1, 2))
@@ -466,7 +470,7 @@ def _special(kind: str) -> Iterator[BranchingRule]:
 
 
 def _tensor_factors(letter: str, size: int) -> Iterator[tuple[str, str, int]]:
-    """The kinds of the two factors, and the size of the first, of the maximal tensor products; so(4) is a product itself."""
+    """The kinds of the two factors of maximal tensor products, and the size of the first; so(4) is a product itself."""
     for p in range(2, size):
         q, rest = divmod(size, p)
         if rest or q < 2:
@@ -503,7 +507,7 @@ def _sum(left: Module, right: Module) -> Module:
 
 
 def _irreducible(kind: str, size: int) -> list[tuple[str, Weight]]:
-    """Proper simple subalgebras of a classical algebra that act irreducibly on C^size, one for each up to automorphisms."""
+    """Proper simple subalgebras of a classical algebra that act irreducibly on C^size, up to their automorphisms."""
     rank, indicator = int(kind[1:]), {"A": 0, "C": -1}.get(kind[0], 1)
     names = [
         f"{x}{r}" for r in range(1, rank + 1) for x, least in (("A", 1), ("B", 2), ("C", 3), ("D", 4)) if r >= least
@@ -538,8 +542,8 @@ def _images(kind: str, weight: Weight) -> Iterator[tuple[tuple[str, ...], tuple[
 def _rule_of_module(kind: str, module: Module) -> BranchingRule:
     """The rule of a special subalgebra of a classical algebra, from the restriction of the smallest module.
 
-    Its weights are e_1, ..., e_n with or without their negatives, in the order of a linear form that is positive on the positive
-    roots of both algebras. So e_i goes to the weight number i of the restriction.
+    Its weights are e_1, ..., e_n with or without their negatives, in the order of a linear form that is positive on the
+    positive roots of both algebras. So e_i goes to the weight number i of the restriction.
     """
     factors, parts = module
     space = weight_space(" + ".join(factors))

@@ -214,8 +214,8 @@ def casimir_eigenvalue(system: RootSystem | str, weight: Sequence[int]) -> Fract
 
     Notes
     -----
-    The inner product is 2 on long roots, so the value on the adjoint module is twice the dual Coxeter number. Half of it
-    is usual in physics, such as 4/3 for the 3 of SU(3).
+    The inner product is 2 on long roots, so the value on the adjoint module is twice the dual Coxeter number. Half of
+    it is usual in physics, such as 4/3 for the 3 of SU(3).
 
     Examples
     --------

@@ -2,20 +2,18 @@
 
 import random
 from collections import Counter
-from fractions import Fraction
-from itertools import combinations
 
 import pytest
 
 import liehom as lh
-from liehom.base.errors import CatalogError, InputError, ShapeError, UndecidedError
+from liehom.base.errors import InputError, UndecidedError
 from liehom.exact.algebra.core.subalgebra import Subalgebra
 from liehom.exact.representations.core.representation import Representation
 
 REGULAR = ["A1", "A2", "B2", "G2", "A3", "B3", "C3"]
 SPECIAL = [  # of sl(N) by a module, of so(n) in another representation
-    ("A1", [2]), ("A1", [3]), ("A1", [4]), ("B2", [0, 1]), ("A2", [2, 0]), ("B2", [1, 0]), ("A3", [0, 1, 0]), ("C3", [1, 0, 0]),
-    ("A1 + A1", [1, 1]), ("A1 + A2", [1, 1, 0]), ("G2", [1, 0]),
+    ("A1", [2]), ("A1", [3]), ("A1", [4]), ("B2", [0, 1]), ("A2", [2, 0]), ("B2", [1, 0]), ("A3", [0, 1, 0]),
+    ("C3", [1, 0, 0]),    ("A1 + A1", [1, 1]), ("A1 + A2", [1, 1, 0]), ("G2", [1, 0]),
 ]  # fmt: skip
 
 
@@ -104,3 +102,89 @@ def test_rule_of_regular_subalgebra_in_scrambled_basis_is_restriction_of_matrice
 @pytest.mark.parametrize("seed", range(120, 200))
 def test_rule_of_special_subalgebra_in_scrambled_basis_is_restriction_of_matrices(seed: int) -> None:
     compared(*special_case(seed))
+
+
+# Every maximal subalgebra to rank 6, and of E7 and E8, by its factors and indices. The types are those of
+# maximal_subgroups of Sage, which follows McKay and Patera; A1 + A1 + A1 in D6 is also there, but it is contained in
+# A1 + C3. The u(1) belong to the nodes with mark 1 of the highest root. The indices were computed, and the test of sums
+# of indices in test_branching.py ties them to the tables of Dynkin indices.
+MAXIMAL = {
+    "A1": "u(1)", "A2": "A1+u(1) 1; A1 4", "A3": "A2+u(1) 1; A1+A1+u(1) 1 1; A1+A1 2 2; B2 1",
+    "A4": "A3+u(1) 1; A1+A2+u(1) 1 1; B2 2",
+    "A5": "A4+u(1) 1; A1+A3+u(1) 1 1; A2+A2+u(1) 1 1; A3 2; C3 1; A1+A2 3 2; A2 5",
+    "A6": "A5+u(1) 1; A1+A4+u(1) 1 1; A2+A3+u(1) 1 1; B3 2",
+    "B2": "A1+A1 1 1; A1+u(1) 2; A1 10", "B3": "A1+A1+A1 1 1 2; A3 1; B2+u(1) 1; G2 1",
+    "B4": "A1+A1+B2 1 1 1; A1+A3 2 1; D4 1; B3+u(1) 1; A1+A1 6 6; A1 60",
+    "B5": "A1+A1+B3 1 1 1; A3+B2 1 1; A1+D4 2 1; D5 1; B4+u(1) 1; A1 110",
+    "B6": "A1+A1+B4 1 1 1; A3+B3 1 1; B2+D4 1 1; A1+D5 2 1; D6 1; B5+u(1) 1; A1 182",
+    "C3": "A1+B2 1 1; A2+u(1) 2; A1+A1 3 8; A1 35",
+    "C4": "A1+C3 1 1; B2+B2 1 1; A3+u(1) 2; A1+A1+A1 4 4 4; A1 84",
+    "C5": "A1+C4 1 1; B2+C3 1 1; A4+u(1) 2; A1+B2 5 4; A1 165",
+    "C6": "A1+C5 1 1; B2+C4 1 1; C3+C3 1 1; A5+u(1) 2; A1+A3 6 4; B2+A1 3 16; A1 286",
+    "D4": "A1+A1+A1+A1 1 1 1 1; A3+u(1) 1; B3 1; A1+B2 2 1; A2 3",
+    "D5": "A1+A1+A3 1 1 1; D4+u(1) 1; A4+u(1) 1; B4 1; A1+B3 2 1; B2+B2 1 1; B2 3",
+    "D6": "A1+A1+D4 1 1 1; A3+A3 1 1; D5+u(1) 1; A5+u(1) 1; B5 1; A1+B4 2 1; B2+B3 1 1; A1+C3 3 1",
+    "G2": "A2 1; A1+A1 1 3; A1 28", "F4": "A1+C3 1 1; A2+A2 1 2; B4 1; A1 156; A1+G2 8 1",
+    "E6": "A1+A5 1 1; A2+A2+A2 1 1 1; D5+u(1) 1; F4 1; C4 1; A2+G2 2 1; G2 3; A2 9",
+    "E7": "A1+D6 1 1; A7 1; A2+A5 1 1; E6+u(1) 1; G2+C3 1 1; A1+F4 3 1; A1+G2 7 2; A2 21; A1+A1 24 15; A1 231; A1 399",
+    "E8": "D8 1; A8 1; A4+A4 1 1; A2+E6 1 1; A1+E7 1 1; G2+F4 1 1; A1+A2 16 6; B2 12; A1 520; A1 760; A1 1240",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("kind", MAXIMAL)
+def test_maximal_subalgebras_and_their_indices(kind: str) -> None:
+    found = [
+        " ".join([rule.name.replace(" ", ""), *map(str, rule.embedding_indices)])
+        for rule in lh.maximal_subalgebras(kind)
+    ]
+    assert found == MAXIMAL[kind].split("; ")
+
+
+@pytest.mark.parametrize("kind", [f"{x}{n}" for n in range(7, 9) for x in "ABCD"] + list(MAXIMAL))
+def test_the_centralizer_of_a_maximal_subalgebra_is_its_centre(kind: str) -> None:
+    rules = lh.maximal_subalgebras(kind)
+    system = lh.root_system(kind)
+    for rule in rules:
+        size = sum(lh.root_system(x).number_of_roots + lh.root_system(x).rank for x in rule.factors)
+        size += len(rule.charge_rows)
+        highest = system.highest_roots[0]
+        top = [sum(c * row[j] for c, row in zip(highest, system.cartan, strict=True)) for j in range(system.rank)]
+        table = rule(top)
+        assert table.dimension == system.rank + system.number_of_roots > size
+        assert sum(t.multiplicity for t in table.terms if t.dimension == 1 and not any(t.charges)) == len(
+            rule.charge_rows
+        )
+
+
+def test_bad_subalgebras_are_refused() -> None:
+    g = lh.so(3, 1)
+    with pytest.raises(InputError, match="not reductive"):
+        lh.branching_rule(g, g.parabolic_subalgebra([0]))
+    with pytest.raises(InputError, match="not semisimple"):
+        u = lh.u(2)
+        lh.branching_rule(u, u.center())
+    with pytest.raises(InputError, match="the algebra of"):
+        lh.branching_rule("A1", g.center())
+    with pytest.raises(InputError, match="not the type of a simple"):
+        lh.maximal_subalgebras("A1 + A1")
+
+
+def test_an_irrational_direction_has_no_integer_charges() -> None:
+    g = lh.chevalley("A2").over(lh.number_field("sqrt(2)"))
+    with pytest.raises(UndecidedError, match="rational ratios"):
+        lh.branching_rule(g, g.subalgebra([[1, "sqrt(2)", 0, 0, 0, 0, 0, 0]]))
+    rule = lh.branching_rule(g, g.subalgebra([["sqrt(2)", "2*sqrt(2)", 0, 0, 0, 0, 0, 0]]))
+    assert {abs(t.charges[0]) for t in rule([1, 1]).terms} == {0, 3}
+
+
+def test_a_subalgebra_of_a_sum_has_an_index_in_each_ideal() -> None:
+    g = lh.direct_sum(lh.so(3), lh.so(3))
+    diagonal = g.subalgebra([[1, 0, 0, 1, 0, 0], [0, 1, 0, 0, 1, 0], [0, 0, 1, 0, 0, 1]])
+    rule = lh.branching_rule(g, diagonal)
+    assert rule.embedding_indices == ((1, 1),) and str(rule([1, 1])) == "3 + 1"
+
+
+def test_the_rule_of_a_chain_is_that_of_the_subalgebra() -> None:
+    chain = lh.branching_rule("E6", "so(10)+u(1)").then(0, lh.branching_rule("D5", "su(5)+u(1)"))
+    assert str(chain("27")) == "10_(1,-1) + 5bar_(1,3) + 5_(-2,2) + 5bar_(-2,-2) + 1_(4,0) + 1_(1,-5)"
+    assert chain.name == "A4 + u(1) + u(1)" and chain.embedding_indices == (1,)
