@@ -226,7 +226,7 @@ def casimir_eigenvalue(system: RootSystem | str, weight: Sequence[int]) -> Fract
     roots, space, top = _of_simple(system, weight)
     shifted = tuple(x + 2 for x in top)
     inverse = roots.fundamental_weights()
-    in_roots = [sum(x * row[i] for x, row in zip(top, inverse, strict=True)) for i in range(space.rank)]
+    in_roots = [sum((x * row[i] for x, row in zip(top, inverse, strict=True)), Fraction(0)) for i in range(space.rank)]
     double = sum((m * c * d for m, c, d in zip(shifted, in_roots, space.norms, strict=True)), Fraction(0))
     return double / max(space.norms)
 
