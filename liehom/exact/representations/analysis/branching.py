@@ -18,7 +18,6 @@ from itertools import combinations, pairwise
 from math import gcd, lcm, prod
 from typing import final
 
-import flint
 import numpy as np
 
 from liehom.base.errors import InputError, displayed
@@ -47,6 +46,7 @@ from liehom.exact.representations.highest_weight.weights import (
     dynkin_index,
     weight_space,
 )
+from liehom.exact.scalars.rational import QQ
 
 Rows = tuple[tuple[int, ...], ...]
 ChargeRows = tuple[tuple[Fraction, ...], ...]
@@ -443,9 +443,8 @@ def central_rows(roots: RootSystem, projection: Rows) -> ChargeRows:
         [sum(Fraction(x * roots.cartan[i][j], roots.norms[i]) for i, x in enumerate(row)) for j in range(rank)]
         for row in projection
     ]
-    scale = lcm(*(x.denominator for row in conditions for x in row))
-    kernel, nullity = flint.fmpz_mat([[int(x * scale) for x in row] for row in conditions]).nullspace()
-    return tuple(primitive([Fraction(int(kernel[i, j])) for i in range(rank)]) for j in range(nullity))
+    kernel = QQ.matrix(conditions).null_space().to_rows()
+    return tuple(primitive([Fraction(int(x.p), int(x.q)) for x in map(QQ.convert, row)]) for row in kernel)
 
 
 def primitive(row: Sequence[Fraction]) -> tuple[Fraction, ...]:

@@ -9,7 +9,6 @@ from fractions import Fraction
 from functools import lru_cache
 from itertools import combinations
 
-import flint
 import numpy as np
 
 from liehom.base.errors import CatalogError, InputError, InternalError, ShapeError, UndecidedError, displayed
@@ -41,8 +40,7 @@ from liehom.exact.representations.highest_weight.weights import (
     weight_space,
 )
 from liehom.exact.scalars.exact_field import ExactMatrix, as_exact
-from liehom.exact.scalars.joint_spectrum import coroot_pairings
-from liehom.exact.scalars.rational import working_precision
+from liehom.exact.scalars.joint_spectrum import coroot_pairings, rational_ratios
 
 LARGEST_VALUE = 1000
 """Bound for the integer values of roots on an element of the centre."""
@@ -289,11 +287,9 @@ def _charge_row(whole: RootData, place: int, order: Sequence[int]) -> tuple[Frac
     """
     g, c = whole.algebra, as_exact(whole.cartan.basis).select(rows=[place])
     balls = [row[place] for row in whole.simple_values()]
-    with working_precision(whole.spectrum.precision):
-        unit = max(balls, key=lambda x: float(x.abs_lower()))
-        ratios = [_ratio(x / unit) for x in balls]
-    values = primitive([x for x in ratios if x is not None])
-    if len(values) == len(ratios):
+    ratios = rational_ratios(balls, LARGEST_VALUE, whole.spectrum.precision)
+    if ratios is not None:
+        values = primitive(ratios)
         sizes = {abs(sum(a * int(m) for a, m in zip(root, values, strict=True))): root for root in whole.roots}
         action = as_exact(g.ad(c))
         total = sum(sum(a * int(m) for a, m in zip(root, values, strict=True)) ** 2 for root in whole.roots)
@@ -308,16 +304,6 @@ def _charge_row(whole: RootData, place: int, order: Sequence[int]) -> tuple[Frac
         f"no rational ratios of the roots were found on {g.show(list(c.row(0)))} in the centre of the subalgebra, so "
         "there are no integer charges; rho.restriction(h).highest_weights() has exact ones"
     )
-
-
-def _ratio(ball: flint.acb) -> Fraction | None:
-    """The rational number with a denominator below `LARGEST_VALUE` in a narrow ball, if it is seen."""
-    narrow = ball.imag.contains(0) and ball.real.rad() < 1 / (4 * LARGEST_VALUE**2) and ball.imag.rad() < 1e-9
-    for d in range(1, LARGEST_VALUE) if narrow else ():
-        n = (ball.real + flint.arb(0, 1 / (4 * LARGEST_VALUE**2))) * d
-        if (m := n.unique_fmpz()) is not None:
-            return Fraction(int(m), d)
-    return None
 
 
 # -- maximal subalgebras --------------------------------------------------------------------------------------
