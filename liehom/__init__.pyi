@@ -79,7 +79,6 @@ from liehom.exact.fullness.checker.verify import verify_certificate as verify_ce
 from liehom.exact.fullness.decide import classify as classify, decide_fullness as decide_fullness
 from liehom.exact.fullness.range_classification import classify_range as classify_range
 from liehom.exact.fullness.verdict import failure_report as failure_report
-from liehom.exact.orbits.breaking import symmetry_breaking as symmetry_breaking
 from liehom.exact.orbits.range import range_condition as range_condition
 from liehom.exact.orbits.strata import (
     adjoint_strata as adjoint_strata,

@@ -43,7 +43,7 @@ ORDER: dict[str, list[str]] = {
         "liehom.exact.fullness.checker": "verify_modular verify_roots verify_pair verify",
         "liehom.exact.fullness.search": "dominance forms witnesses",
         "liehom.exact.geometry": "reductive metrics polynomial_systems einstein forms",
-        "liehom.exact.orbits": "conjugacy range cone types strata breaking",
+        "liehom.exact.orbits": "conjugacy range cone types strata",
         "liehom.exact.pauli": "words span simple_ideals dynamical",
         "liehom.exact.representations": "invariants core rationalization highest_weight constructions analysis",
         "liehom.exact.representations.analysis": (

@@ -1,4 +1,3 @@
-from liehom.exact.orbits.breaking import SymmetryBreaking as SymmetryBreaking, symmetry_breaking as symmetry_breaking
 from liehom.exact.orbits.cone import (
     FailureSet as FailureSet,
     RelativeInvariant as RelativeInvariant,

@@ -1,16 +1,15 @@
 """Branching rules: irreducible modules of a semisimple algebra restricted to a reductive subalgebra, by weights.
 
-Let t_h be a Cartan subalgebra of h in a Cartan subalgebra t_g of g. The simple coroots of h are integer combinations of
-those of g, beta_j^vee = sum_i p_ji alpha_i^vee, so the matrix p maps weights of g in fundamental coordinates to weights
-of h. An element of the centre of h gives a further row, whose values are the charges. The weights of a module are
-mapped by p, and the highest weights of h are peeled off.
+The simple coroots of h are integer combinations of those of g, beta_j^vee = sum_i p_ji alpha_i^vee, on a common Cartan
+subalgebra. So the matrix p maps weights of g to weights of h, and an element of the centre of h gives a further row,
+whose values are the charges. The weights of a module are mapped by p, and the highest weights of h are peeled off.
 """
 
 from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import lru_cache
@@ -22,14 +21,8 @@ import numpy as np
 
 from liehom.base.errors import InputError, displayed
 from liehom.base.objects import DisplayedTable
-from liehom.exact.algebra.roots.root_system import (
-    Root,
-    RootSystem,
-    diagram_components,
-    isomorphisms,
-    parse_type,
-    root_system,
-)
+from liehom.exact.algebra.core.subalgebra import Subalgebra
+from liehom.exact.algebra.roots.root_system import Root, RootSystem, diagram_components, isomorphisms, root_system
 from liehom.exact.algebra.structure.root_spaces import RootData
 from liehom.exact.representations.analysis.weight_multiplicities import weights_on
 from liehom.exact.representations.core.representation import Representation
@@ -53,11 +46,9 @@ ChargeRows = tuple[tuple[Fraction, ...], ...]
 """Rows of numbers, one number for each node of g."""
 
 # -- names of modules -----------------------------------------------------------------------------------------
-# Modules are named by their dimension, as physicists do. Of two dual ones the unbarred has the smaller congruency
-# class, and for equal classes the larger weight in lexicographic order. Primes count the modules of one dimension by
-# Dynkin's index, where modules that duality or a symmetry of the diagram exchanges count once. The letters s and c
-# distinguish modules of D_n, n even, that the symmetry exchanges, and v, s, c those of D4. This follows the tables of
-# LieART (arXiv:1912.10969).
+# As in the tables of LieART (arXiv:1912.10969): of two dual modules the unbarred has the smaller congruency class, and
+# for equal classes the larger weight. Primes count the modules of one dimension by Dynkin's index, where modules that
+# duality or a symmetry of the diagram exchanges count once. The letters s, c, and v for D4, distinguish the latter.
 
 LARGEST_NAMED = 10_000_000
 """Above this dimension a module has its weight in its name instead of primes."""
@@ -71,33 +62,23 @@ def module_name(kind: str, weight: Weight) -> str:
         return f"{size}[{','.join(map(str, weight))}]"
     if kind == "A1":
         return str(size)
-    orbit, dual = symmetric_images(kind, weight), dual_weight(kind, weight)
-    if len(orbit) > 1 and dual == weight:
+    dual = dual_weight(kind, weight)
+    if dual == weight and len(symmetric_images(kind, weight)) > 1:
         letters = _triality_letters(weight) if kind == "D4" else "c" if weight[-2] > weight[-1] else "s"
-        plain = max(orbit)
-    else:
-        plain = _unbarred(kind, weight, dual)
-    classes = {
-        mu if dual_weight(kind, mu) != mu else max(symmetric_images(kind, mu)) for mu in modules_of_size(kind, size)
-    }
-    same = {_unbarred(kind, mu, dual_weight(kind, mu)) for mu in classes}
-    primes = sorted(same, key=lambda mu: (dynkin_index(kind, mu), tuple(-x for x in mu))).index(plain)
-    return f"{size}{'bar' if dual != weight != plain else ''}{chr(39) * primes}{letters}"
+    same = {_plain(kind, mu) for mu in modules_of_size(kind, size)}
+    primes = sorted(same, key=lambda mu: (dynkin_index(kind, mu), tuple(-x for x in mu))).index(_plain(kind, weight))
+    return f"{size}{'bar' if dual != weight != _plain(kind, weight) else ''}{chr(39) * primes}{letters}"
 
 
 def _triality_letters(weight: Weight) -> str:
     """The letter of the node 1, 4 or 3 with the label that differs, or of the nodes with the two largest labels."""
     labels = {"v": weight[0], "s": weight[3], "c": weight[2]}
-    values = sorted(labels.values())
-    if len(set(values)) == 3:
+    if len(set(labels.values())) == 3:
         return "".join(sorted(labels, key=lambda x: -labels[x])[:2])
-    return next(x for x in labels if values.count(labels[x]) == 1)
+    return next(x for x in labels if list(labels.values()).count(labels[x]) == 1)
 
 
-@lru_cache(maxsize=4096)
-def module_size(kind: str, weight: Weight) -> int:
-    """The dimension of an irreducible module."""
-    return weyl_dimension(kind, weight)
+module_size = lru_cache(maxsize=4096)(weyl_dimension)
 
 
 @lru_cache(maxsize=256)
@@ -106,10 +87,11 @@ def modules_of_size(kind: str, size: int) -> tuple[Weight, ...]:
     return tuple(mu for mu, n in weights_up_to(weight_space(kind), size).items() if n == size)
 
 
-def _unbarred(kind: str, weight: Weight, dual: Weight) -> Weight:
-    """The one of two dual weights that has a name without a bar; SU(3) has 6 = (2, 0) by tradition."""
-    if (kind, max(weight, dual)) == ("A2", (2, 0)):
-        return max(weight, dual)
+def _plain(kind: str, weight: Weight) -> Weight:
+    """The weight in its orbit under duality and symmetries whose name has no bar; (2, 0) for SU(3) by tradition."""
+    dual = dual_weight(kind, weight)
+    if dual == weight or (kind, max(weight, dual)) == ("A2", (2, 0)):
+        return max(symmetric_images(kind, weight))
     return min(weight, dual, key=lambda mu: (congruency_class(kind, mu)[::-1], tuple(-x for x in mu)))
 
 
@@ -128,15 +110,12 @@ class BranchingTerm:
 
     Attributes
     ----------
-    multiplicity : int
+    multiplicity, dimension : int
+        How often it occurs, and the dimension of one copy.
     highest_weights : tuple of tuples of int
-        One weight for each simple ideal, in fundamental coordinates.
+        One weight for each simple ideal, in fundamental coordinates; `names` are the names of these modules.
     charges : tuple of Fraction
         One number for each u(1).
-    dimension : int
-        Of one copy.
-    names : tuple of str
-        The name of the module of each simple ideal, such as '5bar'.
 
     Examples
     --------
@@ -158,21 +137,17 @@ class BranchingTerm:
         mark = f"_({charges})" if len(self.charges) > 1 else f"_{charges}" if charges else ""
         return (f"{self.multiplicity}*" if self.multiplicity > 1 else "") + text + mark
 
-    def to_latex(self) -> str:
-        """The term as LaTeX, such as ``(\\mathbf{3},\\mathbf{2})_{1/6}``."""
-        names = [_latex(name) for name in self.names] or [_latex("1")]
-        text = names[0] if len(names) == 1 else f"({','.join(names)})"
-        charges = ",".join(map(str, self.charges))
-        return (str(self.multiplicity) if self.multiplicity > 1 else "") + text + (f"_{{{charges}}}" if charges else "")
 
-
-def _latex(name: str) -> str:
-    """LaTeX of the name of a module."""
-    size, bar, rest = re.fullmatch(r"(\d+)(bar)?(.*)", name).groups()  # type: ignore[union-attr]  # of module_name
-    bold = f"\\mathbf{{{size}}}"
-    bold = f"\\overline{{{bold}}}" if bar else bold
-    primes = rest.count("'")
-    return bold + "'" * primes + (f"_{{{rest[primes:]}}}" if rest[primes:] else "")
+def _latex(term: BranchingTerm) -> str:
+    """A term as LaTeX."""
+    names = []
+    for name in term.names or ("1",):
+        size, bar, primes, letters = re.findall(r"(\d+)(bar)?('*)(.*)", name)[0]
+        names.append(rf"\overline{{\mathbf{{{size}}}}}" if bar else rf"\mathbf{{{size}}}")
+        names[-1] += primes + (f"_{{{letters}}}" if letters else "")
+    text = names[0] if len(names) == 1 else f"({','.join(names)})"
+    charges = f"_{{{','.join(map(str, term.charges))}}}" if term.charges else ""
+    return (str(term.multiplicity) if term.multiplicity > 1 else "") + text + charges
 
 
 @final
@@ -180,10 +155,7 @@ def _latex(name: str) -> str:
 class Branching(DisplayedTable):
     """The restriction of a module to a subalgebra; ``str(...)`` is a sum such as '16_1 + 10_-2 + 1_4'.
 
-    Attributes
-    ----------
-    terms : tuple of BranchingTerm
-        By decreasing dimension, then by decreasing charges.
+    Its `terms` are ordered by decreasing dimension, then by decreasing charges.
 
     Examples
     --------
@@ -209,19 +181,16 @@ class Branching(DisplayedTable):
         Examples
         --------
         >>> import liehom as lh
-        >>> print(lh.branching_rule("D5", "su(5)+u(1)")([1, 0, 0, 0, 0]).to_latex())
-        \\mathbf{5}_{2}+\\overline{\\mathbf{5}}_{-2}
+        >>> print(lh.branching_rule("A2", "su(2)+u(1)")("3bar").to_latex())
+        \\mathbf{2}_{-1}+\\mathbf{1}_{2}
         """
-        return "+".join(term.to_latex() for term in self.terms)
+        return "+".join(map(_latex, self.terms))
 
     def __str__(self) -> str:
         return " + ".join(map(str, self.terms)) or "0"
 
     def __repr__(self) -> str:
         return f"<{self.dimension} of {self.rule.type} = {self}>"
-
-    def _caption(self) -> str:
-        return f"{self.dimension} of {self.rule.type}, restricted to {self.rule.name}"
 
     def _cells(self) -> list[list[str]]:
         head = ["times", "module", *self.rule.factors, *["charge"] * len(self.rule.charge_rows), "dimension"]
@@ -235,8 +204,8 @@ class Branching(DisplayedTable):
 class BranchingRule:
     """How modules of a semisimple algebra g restrict to a reductive subalgebra h; made by `branching_rule`.
 
-    Call it with a highest weight in fundamental coordinates, with the name of a module such as '27' or '16bar', or, if
-    it was made from algebras, with a representation of g. It returns a `Branching`.
+    A call with a highest weight, with the name of a module such as '16bar', or with a representation of g, if the rule
+    was made from algebras, returns a `Branching`.
 
     Attributes
     ----------
@@ -247,10 +216,11 @@ class BranchingRule:
     kind : str
         'regular' or 'special' in Dynkin's sense; 'given' for a subalgebra in a basis.
     projection : tuple of tuples of int
-        The matrix on weights, one row for each simple coroot of h, in the order of `factors`. Its columns are the nodes
-        of g in the order of ``liehom.root_system(type)``.
+        The matrix on weights in fundamental coordinates, with a row for each simple coroot of h.
     charge_rows : tuple of tuples of Fraction
         One further row for each u(1).
+    subalgebra : Subalgebra or None
+        The subalgebra from which the rule was made.
 
     Examples
     --------
@@ -269,6 +239,7 @@ class BranchingRule:
     kind: str
     projection: Rows
     charge_rows: ChargeRows = ()
+    subalgebra: Subalgebra | None = None
     _data: RootData | None = field(default=None, repr=False, compare=False)
 
     @property
@@ -289,50 +260,45 @@ class BranchingRule:
         roots = root_system(self.type)
         indices = tuple(
             tuple(min(_coroot_norm(roots, nodes, self.projection[i]) for i in places) // 2 for places in self.places())
-            for _, nodes in nodes_in_order(roots)
+            for _, nodes in sorted(roots.components(), key=lambda part: min(part[1]))
         )
         return indices[0] if len(indices) == 1 else tuple(zip(*indices, strict=True))
 
-    def __call__(self, module: Sequence[int] | str | Representation) -> Branching:
-        if isinstance(module, Representation):
-            return self.restricted(self._weights_of(module))
-        if isinstance(module, str):
-            module = self._named(module)
-        return self.restricted(character(self.type, module))
-
-    def then(self, factor: int, rule: BranchingRule) -> BranchingRule:
-        """The rule for a subalgebra of one of the simple ideals of h, together with the others.
-
-        Parameters
-        ----------
-        factor : int
-            The place in `factors`.
-        rule : BranchingRule
-            From this ideal; its u(1) come last.
+    @property
+    def complement(self) -> Branching:
+        """The module g/h, to which the Goldstone bosons of a broken symmetry belong.
 
         Examples
         --------
         >>> import liehom as lh
-        >>> to_su5, to_sm = lh.branching_rule("D5", "su(5)+u(1)"), lh.branching_rule("A4", "su(3)+su(2)+u(1)")
-        >>> print(to_su5.then(0, to_sm)("10"))
-        (3,1)_(2,2) + (3bar,1)_(-2,-2) + (1,2)_(2,-3) + (1,2)_(-2,3)
+        >>> print(lh.branching_rule("D5", "su(5)+u(1)").complement)
+        10_4 + 10bar_-4
         """
-        if not 0 <= factor < len(self.factors) or self.factors[factor] != rule.type:
-            raise InputError(f"the rule starts at {rule.type}; found {self.factors} at place {factor}; give its place")
-        places = self.places()
-        inner = np.array([self.projection[i] for i in places[factor]], dtype=object)
-        rows = [[tuple(self.projection[i] for i in part)] for part in places]
-        between = np.array(rule.projection, dtype=object).reshape(-1, len(inner)) @ inner
-        rows[factor] = [tuple(map(tuple, between.tolist()))]
-        charges = np.array(rule.charge_rows, dtype=object).reshape(-1, len(inner)) @ inner
-        return BranchingRule(
-            self.type,
-            (*self.factors[:factor], *rule.factors, *self.factors[factor + 1 :]),
-            "special" if "special" in (self.kind, rule.kind) else rule.kind if self.kind == "regular" else self.kind,
-            tuple(row for part in rows for block in part for row in block),
-            (*self.charge_rows, *map(tuple, charges.tolist())),
-            self._data,
-        )
+        adjoint = self.restricted(_roots_as_weights(root_system(self.type)))
+        own = [(0,) * len(self.projection)] * len(self.charge_rows)  # the highest weights of h
+        for kind, part in zip(self.factors, self.places(), strict=True):
+            *_, top, _ = _roots_as_weights(root_system(kind))
+            own.append((*(0,) * part.start, *top, *(0,) * (len(self.projection) - part.stop)))
+        terms = []
+        for term in adjoint.terms:
+            taken = 0 if any(term.charges) else own.count(sum(term.highest_weights, ()))
+            terms += [replace(term, multiplicity=term.multiplicity - taken)] if term.multiplicity > taken else []
+        return Branching(self, tuple(terms))
+
+    def __call__(self, module: Sequence[int] | str | Representation) -> Branching:
+        if isinstance(module, Representation):
+            if self._data is None or module.algebra != self._data.algebra:
+                source = f"the type {self.type}" if self._data is None else repr(self._data.algebra)
+                raise InputError(f"this rule is made from {source}; {displayed(module)} is of another algebra")
+            return self.restricted(weights_on(module, module, [], self._data))
+        if isinstance(module, str):
+            size = re.match(r"\d{1,7}(?!\d)", module)
+            same = modules_of_size(self.type, int(size[0])) if size and "+" not in self.type else ()
+            named = [mu for mu in same if module_name(self.type, mu) == module]
+            if not named:
+                raise InputError(f"{displayed(module)} does not name a module of {self.type}; give its highest weight")
+            module = named[0]
+        return self.restricted(character(self.type, module))
 
     def __repr__(self) -> str:
         indices = self.embedding_indices
@@ -364,36 +330,17 @@ class BranchingRule:
         terms.sort(key=lambda t: (-t.dimension, [-c for c in t.charges], _plainness(t.names), t.names))
         return Branching(self, tuple(terms))
 
-    def _named(self, name: str) -> Weight:
-        """The highest weight of the module with a name."""
-        (kind,) = parts if len(parts := parse_type(self.type)) == 1 else (None,)
-        size = re.match(r"\d{1,8}(?!\d)", name)
-        if kind is not None and size and int(size[0]) <= LARGEST_NAMED:
-            same = [mu for mu in modules_of_size(self.type, int(size[0])) if module_name(self.type, mu) == name]
-            if same:
-                return same[0]
-        raise InputError(f"{displayed(name)} is not the name of a module of {self.type}; give its highest weight")
 
-    def _weights_of(self, rho: Representation) -> dict[Weight, int]:
-        """The weights of a representation of g on the Cartan subalgebra of this rule."""
-        if self._data is None:
-            raise InputError(
-                f"this rule is made from the type {self.type}: give a highest weight, or make it from algebras"
-            )
-        if rho.algebra is not self._data.algebra and rho.algebra != self._data.algebra:
-            raise InputError(f"{displayed(rho)} is not a representation of {displayed(self._data.algebra)}")
-        return weights_on(rho, self._data)
-
-
-def _plainness(names: Iterable[str]) -> tuple[int, int]:
+def _plainness(names: Sequence[str]) -> tuple[int, int]:
     """The numbers of bars and of other marks in names of modules; v is the plain letter."""
-    text = "".join(names)
-    return text.count("bar"), sum(text.count(x) for x in "'sc")
+    return sum("bar" in name for name in names), sum(name.count(x) for name in names for x in "'sc")
 
 
-def nodes_in_order(roots: RootSystem) -> list[tuple[str, tuple[int, ...]]]:
-    """The components of a root system in the order of their first nodes."""
-    return sorted(roots.components(), key=lambda part: min(part[1]))
+def _roots_as_weights(roots: RootSystem) -> dict[Weight, int]:
+    """The weights of the adjoint module by increasing height, then 0."""
+    space = weight_space(roots)
+    ordered = sorted(map(space.as_weight, roots.roots), key=space.height)
+    return {**dict.fromkeys(ordered, 1), (0,) * roots.rank: roots.rank}
 
 
 def _coroot_norm(roots: RootSystem, nodes: Sequence[int], row: Sequence[int]) -> int:
@@ -416,15 +363,14 @@ def regular_rule(kind: str, nodes: NodeList) -> BranchingRule:
     flat = [i for part in lists for i in part]
     if any(isinstance(i, bool) or not isinstance(i, (int, np.integer)) or not 0 <= i <= roots.rank for i in flat):
         raise InputError(f"nodes of {kind} are numbers from 0 to {roots.rank}; got {displayed(nodes)}")
-    if len(set(flat)) < len(flat) or len(flat) > roots.rank:
-        raise InputError(f"the simple roots are at most {roots.rank} different nodes; got {displayed(nodes)}")
-    if 0 in flat and len(roots.highest_roots) != 1:
-        raise InputError(f"node 0 is the lowest root of a simple algebra, and {kind} is not simple")
-    vectors = {i: roots.simple_roots[i - 1] if i else tuple(-x for x in roots.highest_roots[0]) for i in flat}
+    if len(set(flat)) < len(flat) or len(flat) > roots.rank or (0 in flat and len(roots.highest_roots) != 1):
+        what = "node 0, the lowest root, is that of a simple algebra" if 0 in flat else "they are simple roots"
+        raise InputError(f"at most {roots.rank} different nodes of {kind} are needed ({what}); got {displayed(nodes)}")
     parts: list[tuple[str, list[Root]]] = []
     for part in lists if any(isinstance(x, Sequence) for x in nodes) else [flat]:
-        cartan = [[roots.pairing(vectors[i], vectors[j]) for j in part] for i in part]
-        parts += [(name, [vectors[part[i]] for i in places]) for name, places in diagram_components(cartan)]
+        vectors = nodes_as_roots(roots, part)
+        cartan = [[roots.pairing(a, b) for b in vectors] for a in vectors]
+        parts += [(name, [vectors[i] for i in places]) for name, places in diagram_components(cartan)]
     if any(roots.pairing(a, b) for (_, x), (_, y) in combinations(parts, 2) for a in x for b in y):
         raise InputError(f"an edge of the diagram joins two of the lists {displayed(nodes)}; write them as one list")
     projection = tuple(roots.coroot(a) for _, part in parts for a in part)
@@ -432,18 +378,19 @@ def regular_rule(kind: str, nodes: NodeList) -> BranchingRule:
     return with_fewest_bars(BranchingRule(kind, names, "regular", projection, central_rows(roots, projection)))
 
 
+def nodes_as_roots(roots: RootSystem, nodes: Sequence[int]) -> list[Root]:
+    """The roots of nodes of the extended diagram."""
+    return [roots.simple_roots[i - 1] if i else tuple(-x for x in roots.highest_roots[0]) for i in nodes]
+
+
 def central_rows(roots: RootSystem, projection: Rows) -> ChargeRows:
-    """Elements orthogonal to given coroots, in the simple coroots: coprime integers, coweights of nodes if possible."""
+    """A basis of the elements orthogonal to given coroots, in the simple coroots, by coprime integers."""
     rank = roots.rank
-    kept = {i for i in range(rank) if tuple(int(i == j) for j in range(rank)) in projection}
-    if len(kept) == len(projection):  # a Levi subalgebra: coweights of the other nodes
-        inverse = roots.fundamental_weights()
-        return tuple(primitive([inverse[j][i] for j in range(rank)]) for i in range(rank) if i not in kept)
     conditions = [  # up to a factor, the row of <alpha, alpha_i^vee> for the root alpha of the coroot
         [sum(Fraction(x * roots.cartan[i][j], roots.norms[i]) for i, x in enumerate(row)) for j in range(rank)]
         for row in projection
     ]
-    kernel = QQ.matrix(conditions).null_space().to_rows()
+    kernel = QQ.matrix(conditions, (len(conditions), rank)).null_space().to_rows()
     return tuple(primitive([Fraction(int(x.p), int(x.q)) for x in map(QQ.convert, row)]) for row in kernel)
 
 
@@ -456,21 +403,31 @@ def primitive(row: Sequence[Fraction]) -> tuple[Fraction, ...]:
 
 def with_fewest_bars(rule: BranchingRule) -> BranchingRule:
     """The rule with factors numbered, and u(1) directed, such that the smallest module of g has the plainest names."""
-    rank = root_system(rule.type).rank
-    units = [tuple(int(i == j) for j in range(rank)) for i in range(rank)]
-    reference = character(rule.type, min(units, key=lambda weight: module_size(rule.type, weight)))
     for k, (kind, places) in enumerate(zip(rule.factors, rule.places(), strict=True)):
         cartan = root_system(kind).cartan
         options = []
         for p in isomorphisms(cartan, cartan):
             rows = [*rule.projection[: places.start], *(rule.projection[places[i]] for i in p)]
             option = replace(rule, projection=(*rows, *rule.projection[places.stop :]))
-            marks = [_plainness([term.names[k]]) for term in option.restricted(reference).terms]
+            marks = [_plainness([term.names[k]]) for term in option.restricted(_smallest(rule.type)).terms]
             options.append((tuple(map(sum, zip(*marks, strict=True))), marks, option))
         rule = min(options, key=lambda entry: entry[:2])[2]
+    return directed(rule)
+
+
+def directed(rule: BranchingRule) -> BranchingRule:
+    """The rule with each u(1) directed such that the largest part of the smallest module has a positive charge."""
     for k, row in enumerate(rule.charge_rows):
-        charges = [term.charges[k] for term in rule.restricted(reference).terms]
-        if next(filter(None, charges)) < 0:
-            opposite = tuple(-x for x in row)
-            rule = replace(rule, charge_rows=(*rule.charge_rows[:k], opposite, *rule.charge_rows[k + 1 :]))
+        charges = [term.charges[k] for term in rule.restricted(_smallest(rule.type)).terms]
+        if next(filter(None, charges), 1) < 0:
+            rows = (*rule.charge_rows[:k], tuple(-x for x in row), *rule.charge_rows[k + 1 :])
+            rule = replace(rule, charge_rows=rows)
     return rule
+
+
+@lru_cache(maxsize=64)
+def _smallest(kind: str) -> dict[Weight, int]:
+    """The character of the smallest module with a fundamental weight."""
+    rank = root_system(kind).rank
+    units = [tuple(int(i == j) for j in range(rank)) for i in range(rank)]
+    return character(kind, min(units, key=lambda weight: module_size(kind, weight)))

@@ -8,10 +8,11 @@ from dataclasses import replace
 from fractions import Fraction
 from functools import lru_cache
 from itertools import combinations
+from typing import Any
 
 import numpy as np
 
-from liehom.base.errors import CatalogError, InputError, InternalError, ShapeError, UndecidedError, displayed
+from liehom.base.errors import CatalogError, InputError, InternalError, UndecidedError, displayed
 from liehom.exact.algebra.core.lie_algebra import LieAlgebra
 from liehom.exact.algebra.core.subalgebra import Subalgebra, complement_rows
 from liehom.exact.algebra.roots.real_form import RealForm, canonical_ideals
@@ -23,9 +24,10 @@ from liehom.exact.representations.analysis.branching import (
     NodeList,
     Rows,
     central_rows,
+    directed,
     module_size,
     modules_of_size,
-    nodes_in_order,
+    nodes_as_roots,
     primitive,
     regular_rule,
     symmetric_images,
@@ -61,9 +63,7 @@ def branching_rule(
     subalgebra : str, sequence of int, sequence of sequences of int, or Subalgebra
         For a type:
 
-        * a name such as 'so(10)+u(1)' or 'D5 + u(1)', of a maximal subalgebra or of a regular one; the factors of the
-        rule
-          have its order;
+        * a name such as 'so(10)+u(1)' or 'D5 + u(1)', of a maximal subalgebra or of a regular one;
         * numbers of nodes of the Dynkin diagram, in Bourbaki's numbering from 1, and 0 for the lowest root: the regular
           subalgebra with these simple roots and with all u(1) that commute with them. A list of lists, ``[[1, 2],
           [4]]``, fixes the order of the factors.
@@ -77,18 +77,13 @@ def branching_rule(
     ------
     CatalogError
         If no subalgebra has the name, or several that are not conjugate.
-    InputError
-        If the subalgebra is not reductive in the algebra, or if its centre does not belong to a torus.
+    UndecidedError
+        If no integer charges are found, because the centre is not known to belong to a torus.
 
     Notes
     -----
-    Nodes of a diagram that a symmetry exchanges cannot be distinguished in an algebra in any basis. The rule of such a
-    pair numbers them in one way, for all highest weights that it is called with. A call with a representation does not
-    depend on this.
-
-    References
-    ----------
-    E. B. Dynkin, Semisimple subalgebras of semisimple Lie algebras, Amer. Math. Soc. Transl. 6 (1957) 111.
+    In any basis, nodes that a symmetry of the diagram exchanges cannot be distinguished. A rule numbers them in one way
+    for all highest weights that it is called with; a call with a representation does not depend on this.
 
     Examples
     --------
@@ -100,12 +95,12 @@ def branching_rule(
     >>> print(hypercharge("5bar"), "and", hypercharge("10"))
     (3bar,1)_1/3 + (1,2)_-1/2 and (3,2)_1/6 + (3bar,1)_-2/3 + (1,1)_1
 
-    A subalgebra in a basis, here the one that fixes a vector:
+    The subalgebra that a vacuum leaves unbroken, here a 16 of SO(10), and the broken directions:
 
-    >>> g = lh.so(7)
-    >>> h = lh.spin_representation(7).isotropy([1] + [0] * 7)
-    >>> lh.branching_rule(h.algebra, h)
-    <branching rule B3 > G2, given, of index 1>
+    >>> h = lh.real_module("so(10)", [0, 0, 0, 0, 1]).representation.isotropy([1] + [0] * 31)
+    >>> rule = lh.branching_rule(h.algebra, h)
+    >>> print(lh.structure_name(h), rule.embedding_indices, rule.complement, rule("54"), sep=" | ")
+    su(5) | (1,) | 10 + 10bar + 1 | 24 + 15 + 15bar
     """
     if isinstance(subalgebra, Subalgebra):
         if not isinstance(algebra, LieAlgebra):
@@ -131,34 +126,28 @@ def _types_named(name: str) -> list[str]:
     kinds = []
     for part in re.split(r"[+x×⊕]", name.replace(" ", "")):
         if re.fullmatch(r"[A-G]\d+", part):
-            kinds += [kind for kind, _ in nodes_in_order(root_system(part))]
+            kinds += [name for name, _ in root_system(part).components()]
         elif part.lower() not in ("u(1)", "so(2)", "u1"):
             kinds += [RealForm.of_name(ideal).type for ideal in canonical_ideals(part)]
     return kinds
 
 
-def _scaled(rows: ChargeRows, scale: object) -> ChargeRows:
+def _scaled(rows: ChargeRows, scale: ChargeScale) -> ChargeRows:
     """The rows of charges times numbers, or times a matrix."""
     count = len(rows)
-    given: list[object] = list(scale) if isinstance(scale, Sequence) and not isinstance(scale, str) else [scale] * count
-    if not any(isinstance(row, Sequence) and not isinstance(row, str) for row in given):
-        given = [[x if i == j else 0 for j in range(count)] for i, x in enumerate(given)]
+    factors: list[Any] = list(scale) if isinstance(scale, (list, tuple)) else [scale] * count
     try:
-        matrix = [[_exact(x) for x in row] for row in given]  # type: ignore[attr-defined]  # a row, or TypeError
+        if not any(isinstance(row, (list, tuple)) for row in factors):
+            factors = [[x if i == j else 0 for j in range(count)] for i, x in enumerate(factors)]
+        if any(isinstance(x, float) for row in factors for x in row):
+            raise TypeError("a float is not exact")
+        matrix = np.array([[Fraction(x) for x in row] for row in factors], dtype=object).reshape(count, count)
     except (TypeError, ValueError, ZeroDivisionError) as error:
-        raise InputError(f"charges are scaled by exact numbers such as '1/6'; got {displayed(scale)}") from error
-    if any(len(row) != count for row in matrix) or len(matrix) != count:
-        raise ShapeError(
-            f"there are {count} u(1): give one factor, {count} factors, or {count} rows of {count} numbers"
-        )
-    scaled = np.array(matrix, dtype=object).reshape(count, count) @ np.array(rows, dtype=object).reshape(count, -1)
-    return tuple(map(tuple, scaled.tolist()))
-
-
-def _exact(value: int | Fraction | str) -> Fraction:
-    if isinstance(value, float):
-        raise TypeError("a float is not exact")
-    return Fraction(value)
+        raise InputError(
+            f"the charges of {count} u(1) are scaled by exact numbers such as '1/6': one, {count}, or {count} rows of "
+            f"{count}; got {displayed(scale)}"
+        ) from error
+    return tuple(map(tuple, (matrix @ np.array(rows, dtype=object).reshape(count, -1)).tolist()))
 
 
 # -- by name --------------------------------------------------------------------------------------------------
@@ -166,27 +155,22 @@ def _rule_by_name(kind: str, name: str) -> BranchingRule:
     """The rule for a maximal subalgebra with a name, else for the regular subalgebra with this name."""
     roots, wanted = root_system(kind), _types_named(name)
     count = len(re.findall(r"(?i)\bu\(1\)|\bso\(2\)", name))
-    simple = len(roots.components()) == 1
-    named = [rule for rule in (maximal_subalgebras(kind) if simple else []) if _has_name(rule, wanted, count)]
-    for most in (roots.rank, roots.rank - 1) if not named else ():
-        size = sum(int(part[1:]) for part in wanted)
-        nodes = range(int(not simple or most == roots.rank - 1), roots.rank + 1)
-        subsets = combinations(nodes, size) if size <= roots.rank else ()
+    simple, key = len(roots.components()) == 1, (sorted(wanted), count)
+    maximal = maximal_subalgebras(kind) if simple else ()
+    named = [rule for rule in maximal if (sorted(rule.factors), len(rule.charge_rows)) == key]
+    if not named:
+        subsets = combinations(range(not simple, roots.rank + 1), sum(int(part[1:]) for part in wanted))
         regular = (regular_rule(kind, part) for part in subsets if _type_of_nodes(kind, part) == sorted(wanted))
-        named = [rule if count else replace(rule, charge_rows=()) for rule in regular]
-        named = [rule for rule in named if _has_name(rule, wanted, count)]
-    classes: dict[object, BranchingRule] = {}
-    for rule in named:
-        classes.setdefault(_signature(rule), rule)
+        either = (rule if count else replace(rule, charge_rows=()) for rule in regular)
+        named = [rule for rule in either if (sorted(rule.factors), len(rule.charge_rows)) == key]
+    classes = {_signature(rule): rule for rule in reversed(named)}
     if not classes:
-        known = ", ".join(rule.name for rule in maximal_subalgebras(kind)) if simple else "those by nodes"
+        known = ", ".join(rule.name for rule in maximal)
         raise CatalogError(f"{displayed(name)} is not a maximal or regular subalgebra of {kind}; maximal ones: {known}")
     if len(classes) > 1:
-        indices = "; ".join(str(rule.embedding_indices) for rule in classes.values())
-        raise CatalogError(
-            f"{kind} has several subalgebras {displayed(name)}, of indices {indices}: give the nodes of the one you "
-            "mean, or take it from maximal_subalgebras"
-        )
+        indices = "; ".join(str(rule.embedding_indices) for rule in reversed(classes.values()))
+        what = f"{kind} has several subalgebras {displayed(name)}, of indices {indices}"
+        raise CatalogError(f"{what}: give the nodes of the one you mean, or take it from maximal_subalgebras")
     return _in_order_of(next(iter(classes.values())), wanted)
 
 
@@ -194,12 +178,8 @@ def _rule_by_name(kind: str, name: str) -> BranchingRule:
 def _type_of_nodes(kind: str, nodes: tuple[int, ...]) -> list[str]:
     """The sorted types of the subdiagram of the extended diagram with given nodes."""
     roots = root_system(kind)
-    vectors = [roots.simple_roots[i - 1] if i else tuple(-x for x in roots.highest_roots[0]) for i in nodes]
+    vectors = nodes_as_roots(roots, nodes)
     return [name for name, _ in diagram_components([[roots.pairing(a, b) for b in vectors] for a in vectors])]
-
-
-def _has_name(rule: BranchingRule, wanted: list[str], count: int) -> bool:
-    return sorted(rule.factors) == sorted(wanted) and len(rule.charge_rows) == count
 
 
 def _signature(rule: BranchingRule) -> object:
@@ -214,16 +194,14 @@ def _signature(rule: BranchingRule) -> object:
 
 def _in_order_of(rule: BranchingRule, wanted: Sequence[str]) -> BranchingRule:
     """The rule with its factors in a given order."""
-    blocks = [
-        (kind, [rule.projection[i] for i in part]) for kind, part in zip(rule.factors, rule.places(), strict=True)
-    ]
-    chosen = [blocks.pop(next(i for i, block in enumerate(blocks) if block[0] == kind)) for kind in wanted]
-    return replace(rule, factors=tuple(wanted), projection=tuple(row for _, rows in chosen for row in rows))
+    places = list(zip(rule.factors, rule.places(), strict=True))
+    chosen = [places.pop([kind for kind, _ in places].index(kind))[1] for kind in wanted]
+    return replace(rule, factors=tuple(wanted), projection=tuple(rule.projection[i] for part in chosen for i in part))
 
 
 # -- in a basis -----------------------------------------------------------------------------------------------
-# A Cartan subalgebra of the centralizer of t_h contains t_h and is a Cartan subalgebra of g. The roots of g and of h on
-# it are known as balls, and the values of the roots of g on the coroots of h are integers.
+# A Cartan subalgebra of the centralizer of t_h contains t_h and is one of g. The roots of g and of h on it are known as
+# balls, and the values of the roots of g on the coroots of h are integers.
 
 
 def _rule_of_pair(h: Subalgebra) -> BranchingRule:
@@ -232,7 +210,7 @@ def _rule_of_pair(h: Subalgebra) -> BranchingRule:
     if not g.is_semisimple():
         raise InputError(f"{g!r} is not semisimple; branch from its Levi factor, or from a type")
     center = as_exact(inner.center().basis) @ as_exact(h.basis)
-    if not inner.is_reductive() or not all(semisimple_defect(g.ad(c)).is_zero() for c in _rows(center)):
+    if not inner.is_reductive() or not all(semisimple_defect(g.ad(c)).is_zero() for c in center.to_rows()):
         raise InputError(f"{h!r} is not reductive in {g!r}: restricted modules need not be sums of irreducible ones")
     to_g = as_exact(h.basis)
     if center.nrows:
@@ -254,11 +232,7 @@ def _rule_of_pair(h: Subalgebra) -> BranchingRule:
         rows = central_rows(root_system(kind), projection)
     else:
         rows = tuple(_charge_row(whole, k, order) for k in range(len(projection), torus.nrows))
-    return BranchingRule(kind, factors, "given", projection, rows, whole)
-
-
-def _rows(matrix: ExactMatrix) -> list[ExactMatrix]:
-    return [matrix.select(rows=[i]) for i in range(matrix.nrows)]
+    return directed(BranchingRule(kind, factors, "given", projection, rows, h, whole))
 
 
 def _coroots(whole: RootData, data: RootData, torus: ExactMatrix) -> Rows:
@@ -289,16 +263,14 @@ def _charge_row(whole: RootData, place: int, order: Sequence[int]) -> tuple[Frac
     balls = [row[place] for row in whole.simple_values()]
     ratios = rational_ratios(balls, LARGEST_VALUE, whole.spectrum.precision)
     if ratios is not None:
-        values = primitive(ratios)
-        sizes = {abs(sum(a * int(m) for a, m in zip(root, values, strict=True))): root for root in whole.roots}
-        action = as_exact(g.ad(c))
-        total = sum(sum(a * int(m) for a, m in zip(root, values, strict=True)) ** 2 for root in whole.roots)
-        square, product = (action @ action).trace() / total, action
-        for size in filter(None, sizes):
+        values, action = primitive(ratios), as_exact(g.ad(c))
+        sizes = [abs(int(sum((a * m for a, m in zip(root, values, strict=True)), Fraction(0)))) for root in whole.roots]
+        square, product = (action @ action).trace() / sum(size**2 for size in sizes), action
+        for size in {*sizes} - {0}:
             product = product @ action @ action - product.scale(square * size**2)
         if product.is_zero() and max(sizes) < LARGEST_VALUE:
             inverse = whole.root_system.fundamental_weights()
-            row = [sum(x * m for x, m in zip(line, values, strict=True)) for line in inverse]
+            row = [sum((x * m for x, m in zip(line, values, strict=True)), Fraction(0)) for line in inverse]
             return primitive([row[i] for i in order])
     raise UndecidedError(
         f"no rational ratios of the roots were found on {g.show(list(c.row(0)))} in the centre of the subalgebra, so "
@@ -317,56 +289,32 @@ def _charge_row(whole: RootData, place: int, order: Sequence[int]) -> tuple[Frac
 # A1 are the diagrams of Testerman, with 2 at each node, except for 0 at node 4 or at the nodes 4 and 6. The others are
 # the solutions of the restrictions of the smallest module.
 
-SPECIAL: dict[str, list[tuple[tuple[str, ...], Rows]]] = {
-    "G2": [(("A1",), ((6, 10),))],
-    "F4": [
-        (("A1",), ((22, 42, 30, 16),)),
-        (("A1", "G2"), ((4, 4, 4, 2), (1, 1, 0, 1), (0, 1, 1, 0))),
-    ],
-    "E6": [
-        (("F4",), ((0, 1, 0, 0, 0, 0), (0, 0, 0, 1, 0, 0), (0, 0, 1, 0, 1, 0), (1, 0, 0, 0, 0, 1))),
-        (("C4",), ((0, 0, 1, 2, 1, 0), (1, 0, 0, 0, 0, 1), (0, 0, 1, 0, 1, 0), (0, 1, 0, 1, 0, 0))),
-        (("A2", "G2"), ((0, 1, 1, 1, 2, 1), (1, 1, 0, 1, 0, 0), (1, 1, 2, 1, 0, 1), (0, 0, 0, 1, 1, 0))),
-        (("G2",), ((2, 1, 2, 5, 2, 2), (0, 1, 1, 0, 1, 0))),
-        (("A2",), ((2, 4, 5, 5, 5, 2), (2, 1, 2, 5, 2, 2))),
-    ],
-    "E7": [
-        (
-            ("G2", "C3"),
-            (
-                *((1, 1, 2, 1, 2, 2, 1), (0, 0, 0, 1, 0, 0, 0)),
-                *((0, 1, 1, 1, 0, 0, 1), (1, 1, 0, 1, 1, 1, 0), (0, 0, 1, 1, 1, 0, 0)),
-            ),
-        ),
-        (
-            ("A1", "F4"),
-            (
-                (0, 1, 0, 2, 1, 2, 1),
-                *((1, 0, 0, 0, 0, 0, 0), (0, 0, 1, 1, 0, 0, 0), (0, 1, 0, 0, 1, 1, 0), (0, 0, 0, 1, 1, 0, 1)),
-            ),
-        ),
-        (("A1", "G2"), ((2, 3, 4, 4, 5, 4, 1), (2, 1, 2, 4, 4, 1, 0), (0, 1, 1, 1, 0, 1, 1))),
-        (("A2",), ((4, 7, 9, 11, 10, 6, 6), (4, 4, 6, 11, 7, 6, 0))),
-        (("A1", "A1"), ((8, 10, 14, 18, 16, 12, 6), (2, 5, 6, 12, 7, 4, 3))),
-        (("A1",), ((26, 37, 50, 72, 57, 40, 21),)),
-        (("A1",), ((34, 49, 66, 96, 75, 52, 27),)),
-    ],
-    "E8": [
-        (
-            ("G2", "F4"),
-            (
-                *((1, 1, 2, 1, 2, 2, 1, 1), (0, 0, 0, 1, 0, 0, 0, 0)),
-                *((0, 0, 0, 0, 0, 1, 1, 0), (0, 0, 1, 1, 1, 0, 0, 0)),
-                *((1, 1, 0, 1, 1, 1, 0, 0), (0, 1, 1, 1, 0, 0, 1, 1)),
-            ),
-        ),
-        (("A1", "A2"), ((8, 12, 16, 22, 16, 14, 10, 6), (2, 3, 4, 8, 6, 4, 4, 1), (2, 3, 4, 5, 6, 4, 1, 1))),
-        (("B2",), ((4, 6, 8, 9, 8, 7, 3, 3), (4, 6, 8, 16, 12, 8, 8, 2))),
-        (("A1",), ((60, 88, 118, 174, 142, 108, 74, 38),)),
-        (("A1",), ((72, 106, 142, 210, 172, 132, 90, 46),)),
-        (("A1",), ((92, 136, 182, 270, 220, 168, 114, 58),)),
-    ],
+SPECIAL = {
+    "G2": {"A1": "6 10"},
+    "F4": {"A1": "22 42 30 16", "A1 G2": "4 4 4 2, 1 1 0 1, 0 1 1 0"},
+    "E6": {
+        "F4": "0 1 0 0 0 0, 0 0 0 1 0 0, 0 0 1 0 1 0, 1 0 0 0 0 1",
+        "C4": "0 0 1 2 1 0, 1 0 0 0 0 1, 0 0 1 0 1 0, 0 1 0 1 0 0",
+        "A2 G2": "0 1 1 1 2 1, 1 1 0 1 0 0, 1 1 2 1 0 1, 0 0 0 1 1 0",
+        "G2": "2 1 2 5 2 2, 0 1 1 0 1 0",
+        "A2": "2 4 5 5 5 2, 2 1 2 5 2 2",
+    },
+    "E7": {
+        "G2 C3": "1 1 2 1 2 2 1, 0 0 0 1 0 0 0, 0 1 1 1 0 0 1, 1 1 0 1 1 1 0, 0 0 1 1 1 0 0",
+        "A1 F4": "0 1 0 2 1 2 1, 1 0 0 0 0 0 0, 0 0 1 1 0 0 0, 0 1 0 0 1 1 0, 0 0 0 1 1 0 1",
+        "A1 G2": "2 3 4 4 5 4 1, 2 1 2 4 4 1 0, 0 1 1 1 0 1 1",
+        "A2": "4 7 9 11 10 6 6, 4 4 6 11 7 6 0",
+        "A1 A1": "8 10 14 18 16 12 6, 2 5 6 12 7 4 3",
+        "A1": "26 37 50 72 57 40 21; 34 49 66 96 75 52 27",
+    },
+    "E8": {
+        "G2 F4": "1 1 2 1 2 2 1 1, 0 0 0 1 0 0 0 0, 0 0 0 0 0 1 1 0, 0 0 1 1 1 0 0 0, 1 1 0 1 1 1 0 0, 0 1 1 1 0 0 1 1",
+        "A1 A2": "8 12 16 22 16 14 10 6, 2 3 4 8 6 4 4 1, 2 3 4 5 6 4 1 1",
+        "B2": "4 6 8 9 8 7 3 3, 4 6 8 16 12 8 8 2",
+        "A1": "60 88 118 174 142 108 74 38; 72 106 142 210 172 132 90 46; 92 136 182 270 220 168 114 58",
+    },
 }
+"""The rows of the projection, separated by commas; several subalgebras of one type by semicolons."""
 
 
 def maximal_subalgebras(algebra: LieAlgebra | str) -> tuple[BranchingRule, ...]:
@@ -380,17 +328,16 @@ def maximal_subalgebras(algebra: LieAlgebra | str) -> tuple[BranchingRule, ...]:
     Returns
     -------
     tuple of BranchingRule
-        Regular semisimple ones, regular ones with a u(1), then special ones; each with its Dynkin indices.
+        Regular semisimple ones, regular ones with a u(1), then special ones.
 
     Notes
     -----
-    The subalgebras with a u(1) are maximal among the reductive ones, and are contained in a parabolic subalgebra. The
-    real maximal subalgebras of real forms are in `liehom.atlas`.
+    The subalgebras with a u(1) are maximal among the reductive ones, and are contained in a parabolic subalgebra.
 
     References
     ----------
-    E. B. Dynkin, Semisimple subalgebras of semisimple Lie algebras, Amer. Math. Soc. Transl. 6 (1957) 111, tables 12
-    and 39; Maximal subgroups of the classical groups, ibid. 245.
+    E. B. Dynkin, Semisimple subalgebras of semisimple Lie algebras, Amer. Math. Soc. Transl. 6 (1957) 111; Maximal
+    subgroups of the classical groups, ibid. 245.
 
     Examples
     --------
@@ -405,15 +352,14 @@ def maximal_subalgebras(algebra: LieAlgebra | str) -> tuple[BranchingRule, ...]:
     components = root_system(kind).components()
     if len(components) != 1:
         raise InputError(f"{kind} is not the type of a simple algebra; take its components, such as 'A2', in turn")
-    return _maximal(components[0][0] if kind[0] in "BD" and kind[1:] in ("1", "3") else kind)
+    return _maximal(kind if kind == "C2" else components[0][0])
 
 
 @lru_cache(maxsize=64)
 def _maximal(kind: str) -> tuple[BranchingRule, ...]:
     roots = root_system(kind)
     marks = [1, *roots.highest_roots[0]]
-    lowest = tuple(-x for x in roots.highest_roots[0])
-    vectors = [lowest, *roots.simple_roots]
+    vectors = nodes_as_roots(roots, range(roots.rank + 1))
     cartan = [[roots.pairing(a, b) for b in vectors] for a in vectors]
     symmetries = isomorphisms(cartan, cartan)
     nodes = range(1, roots.rank + 1)
@@ -421,10 +367,11 @@ def _maximal(kind: str) -> tuple[BranchingRule, ...]:
     pairs = {min(tuple(sorted((p[0], p[i]))) for p in symmetries): i for i in reversed(nodes) if marks[i] == 1}
     whole = [regular_rule(kind, [k for k in range(roots.rank + 1) if k != i]) for i in prime]
     levi = [regular_rule(kind, [k for k in nodes if k != i]) for i in sorted(pairs.values())]
-    if kind in SPECIAL:
-        special = [with_fewest_bars(BranchingRule(kind, key, "special", rows)) for key, rows in SPECIAL[kind]]
-    else:
-        special = list(_special(kind)) if kind[0] in "ABCD" else []
+    special = list(_special(kind)) if kind[0] in "ABCD" else []
+    for key, text in SPECIAL.get(kind, {}).items():
+        for rows in text.split(";"):
+            projection = tuple(tuple(map(int, row.split())) for row in rows.split(","))
+            special.append(with_fewest_bars(BranchingRule(kind, tuple(key.split()), "special", projection)))
     return (*whole, *levi, *special)
 
 
@@ -437,16 +384,12 @@ def _special(kind: str) -> Iterator[BranchingRule]:
     letter, n = kind[0], int(kind[1:])
     size = {"A": n + 1, "B": 2 * n + 1, "C": 2 * n, "D": 2 * n}[letter]
     if letter == "A":
-        yield from (
-            _rule_of_module(kind, _vector(x, size))
-            for x in ("so", "sp")
-            if size > 2 and (x == "so" or (size % 2 == 0 and size > 2))
-        )
+        series = ("so", "sp")[: 0 if n == 1 else 1 + n % 2]
+        yield from (_rule_of_module(kind, _vector(x, size)) for x in series)
     if letter == "D":
         yield from (_rule_of_module(kind, _sum(_vector("so", p), _vector("so", size - p))) for p in range(1, n + 1, 2))
-    products = [
-        _tensor(_vector(x, p), _vector(y, size // p)) for x, y, p in _tensor_factors(letter, size) if kind != "D4"
-    ]
+    factors = _tensor_factors(letter, size) if kind != "D4" else ()
+    products = [_tensor(_vector(x, p), _vector(y, size // p)) for x, y, p in factors]
     simple = _irreducible(kind, size)
     larger = {image for pair in simple for image in _images(*pair)}
     yield from (_rule_of_module(kind, module) for module in products if (module[0], module[1][0]) not in larger)
@@ -473,12 +416,11 @@ def _tensor_factors(letter: str, size: int) -> Iterator[tuple[str, str, int]]:
 
 def _vector(series: str, size: int) -> Module:
     """The smallest module of sl, sp or so; so(4) has two simple ideals, and so(1) has none."""
-    small = {("so", 1): ((), ()), ("so", 3): (("A1",), ((2,),)), ("so", 4): (("A1", "A1"), ((1,), (1,)))}
-    small |= {("so", 5): (("B2",), ((1, 0),)), ("so", 6): (("A3",), ((0, 1, 0),)), ("sp", 2): (("A1",), ((1,),))}
-    small |= {("sp", 4): (("B2",), ((0, 1),))}
-    if (series, size) in small:
-        kinds, weights = small[series, size]
-        return kinds, [weights]
+    small: dict[str, Module] = {"so1": ((), [()]), "so3": (("A1",), [((2,),)]), "so4": (("A1", "A1"), [((1,), (1,))])}
+    small |= {"so5": (("B2",), [((1, 0),)]), "so6": (("A3",), [((0, 1, 0),)])}
+    small |= {"sp2": (("A1",), [((1,),)]), "sp4": (("B2",), [((0, 1),)])}
+    if known := small.get(f"{series}{size}"):
+        return known
     letter, rank = {"sl": ("A", size - 1), "sp": ("C", size // 2)}.get(series, ("BD"[size % 2 == 0], size // 2))
     return (f"{letter}{rank}",), [((1, *[0] * (rank - 1)),)]
 
@@ -495,19 +437,21 @@ def _sum(left: Module, right: Module) -> Module:
 def _irreducible(kind: str, size: int) -> list[tuple[str, Weight]]:
     """Proper simple subalgebras of a classical algebra that act irreducibly on C^size, up to their automorphisms."""
     rank, indicator = int(kind[1:]), {"A": 0, "C": -1}.get(kind[0], 1)
-    names = [
-        f"{x}{r}" for r in range(1, rank + 1) for x, least in (("A", 1), ("B", 2), ("C", 3), ("D", 4)) if r >= least
-    ]
+    whole = root_system(kind).rank + root_system(kind).number_of_roots
+    names = [f"{x}{r}" for r in range(1, rank + 1) for x, least in zip("ABCD", (1, 2, 3, 4), strict=True) if r >= least]
     names += [name for name in ("G2", "F4", "E6", "E7", "E8") if int(name[1:]) <= rank]
-    found = []
-    for name in names:
-        roots = root_system(name)
-        if roots.rank + roots.number_of_roots < root_system(kind).rank + root_system(kind).number_of_roots:
-            for weight in modules_of_size(name, size):
-                same = {x for image in symmetric_images(name, weight) for x in (image, dual_weight(name, image))}
-                if weight == max(same) and frobenius_schur_indicator(name, weight) == indicator:
-                    found.append((name, weight))
-    return found
+    return [
+        (name, weight)
+        for name in names
+        if root_system(name).rank + root_system(name).number_of_roots < whole
+        for weight in modules_of_size(name, size)
+        if weight == _representative(name, weight) and frobenius_schur_indicator(name, weight) == indicator
+    ]
+
+
+def _representative(name: str, weight: Weight) -> Weight:
+    """The largest weight among the images under duality and the symmetries of the diagram."""
+    return max(x for image in symmetric_images(name, weight) for x in (image, dual_weight(name, image)))
 
 
 def _images(kind: str, weight: Weight) -> Iterator[tuple[tuple[str, ...], tuple[Weight, ...]]]:
@@ -515,12 +459,8 @@ def _images(kind: str, weight: Weight) -> Iterator[tuple[tuple[str, ...], tuple[
     for rule in _maximal(kind):
         terms = rule(weight).terms
         if len(terms) == 1 and terms[0].multiplicity == 1 and not rule.charge_rows:
-            (term,) = terms
-            tops = [
-                max(x for y in symmetric_images(name, top) for x in (y, dual_weight(name, y)))
-                for name, top in zip(rule.factors, term.highest_weights, strict=True)
-            ]
-            yield rule.factors, tuple(tops)
+            tops = tuple(map(_representative, rule.factors, terms[0].highest_weights))
+            yield rule.factors, tops
             if len(tops) == 1:
                 yield from _images(rule.factors[0], tops[0])
 
@@ -532,15 +472,10 @@ def _rule_of_module(kind: str, module: Module) -> BranchingRule:
     positive roots of both algebras. So e_i goes to the weight number i of the restriction.
     """
     factors, parts = module
-    space = weight_space(" + ".join(factors))
-    weights = [
-        mu
-        for part in parts
-        for mu, m in character(" + ".join(factors), [x for w in part for x in w]).items()
-        for _ in range(m)
-    ]
+    kinds, n = " + ".join(factors), int(kind[1:])
+    space, tops = weight_space(kinds), ([x for top in part for x in top] for part in parts)
+    weights = [mu for top in tops for mu, m in character(kinds, top).items() for _ in range(m)]
     weights.sort(key=lambda mu: (space.height(mu), mu), reverse=True)
-    n = int(kind[1:])
     sums = np.cumsum(np.array(weights[:n], dtype=object).reshape(n, -1), axis=0)
     if kind[0] in "BD":
         if kind[0] == "D":

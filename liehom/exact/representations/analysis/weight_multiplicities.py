@@ -140,7 +140,7 @@ def weight_multiplicities(rho: Representation) -> dict[Any, int]:
     """Implements `Representation.weights`."""
     g = rho.algebra
     if g.is_semisimple():
-        return _weights(rho, rho, [])
+        return weights_on(rho, rho, [])
     center = g.center()
     if not g.is_reductive():
         raise InputError(
@@ -148,15 +148,10 @@ def weight_multiplicities(rho: Representation) -> dict[Any, int]:
             "restrict to the Levi factor of levi_decomposition()"
         )
     central = [cast(ExactMatrix, rho(row)) for row in center.rows()]
-    return _weights(rho, rho.restriction(g.derived_subalgebra()), central)
+    return weights_on(rho, rho.restriction(g.derived_subalgebra()), central)
 
 
-def weights_on(rho: Representation, data: RootData) -> dict[Weight, int]:
-    """The weights of a representation of a semisimple algebra on a Cartan subalgebra, in the order of its diagram."""
-    return _weights(rho, rho, [], data)
-
-
-def _weights(
+def weights_on(
     rho: Representation, derived: Representation, central: list[ExactMatrix], data: RootData | None = None
 ) -> dict[Any, int]:
     """Weights of the semisimple part, with charges if there are elements of the centre."""

@@ -160,25 +160,12 @@ def tensor_product_decomposition(
 
 
 def symmetric_power_decomposition(system: RootSystem | str, weight: Sequence[int], k: int) -> dict[Weight, int]:
-    """The highest weights, with multiplicities, of the irreducible parts of a symmetric power of a module.
-
-    Parameters
-    ----------
-    system : RootSystem or str
-    weight : sequence of int
-        The highest weight of the module V, dominant.
-    k : int
-        The degree, at least 0.
-
-    Returns
-    -------
-    dict
-        {highest weight: multiplicity}, by decreasing height.
+    """The highest weights, with multiplicities, of the irreducible parts of the k-th symmetric power of a module.
 
     Notes
     -----
     Newton's identity k S^k = sum_i psi^i S^(k-i), i = 1, ..., k, where the Adams operation psi^i multiplies all weights
-    of V by i. Its product with an irreducible module is decomposed as in `tensor_product_decomposition`.
+    by i. Its product with an irreducible module is decomposed as in `tensor_product_decomposition`.
 
     Examples
     --------
@@ -190,24 +177,7 @@ def symmetric_power_decomposition(system: RootSystem | str, weight: Sequence[int
 
 
 def exterior_power_decomposition(system: RootSystem | str, weight: Sequence[int], k: int) -> dict[Weight, int]:
-    """The highest weights, with multiplicities, of the irreducible parts of an exterior power of a module.
-
-    Parameters
-    ----------
-    system : RootSystem or str
-    weight : sequence of int
-        The highest weight of the module V, dominant.
-    k : int
-        The degree, at least 0; the result is empty if k exceeds dim V.
-
-    Returns
-    -------
-    dict
-        {highest weight: multiplicity}, by decreasing height.
-
-    Notes
-    -----
-    Newton's identity of `symmetric_power_decomposition` with the signs (-1)^(i-1).
+    """The highest weights, with multiplicities, of the irreducible parts of the k-th exterior power of a module.
 
     Examples
     --------

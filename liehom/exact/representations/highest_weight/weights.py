@@ -205,13 +205,6 @@ def frobenius_schur_indicator(system: RootSystem | str, weight: Sequence[int]) -
 def casimir_eigenvalue(system: RootSystem | str, weight: Sequence[int]) -> Fraction:
     """The eigenvalue (lambda, lambda + 2 rho) of the quadratic Casimir element on an irreducible module, a Fraction.
 
-    Parameters
-    ----------
-    system : RootSystem or str
-        Of a simple algebra, such as 'E6'.
-    weight : sequence of int
-        Dominant.
-
     Notes
     -----
     The inner product is 2 on long roots, so the value on the adjoint module is twice the dual Coxeter number. Half of
@@ -224,7 +217,7 @@ def casimir_eigenvalue(system: RootSystem | str, weight: Sequence[int]) -> Fract
     ['8/3', '6']
     """
     roots, space, top = _of_simple(system, weight)
-    shifted = tuple(x + 2 for x in top)
+    shifted = tuple(x + 2 for x in checked_weight(space, top))
     inverse = roots.fundamental_weights()
     in_roots = [sum((x * row[i] for x, row in zip(top, inverse, strict=True)), Fraction(0)) for i in range(space.rank)]
     double = sum((m * c * d for m, c, d in zip(shifted, in_roots, space.norms, strict=True)), Fraction(0))
@@ -234,21 +227,10 @@ def casimir_eigenvalue(system: RootSystem | str, weight: Sequence[int]) -> Fract
 def dynkin_index(system: RootSystem | str, weight: Sequence[int]) -> int:
     """Dynkin's index of an irreducible module of a simple algebra, an int: 1 for the smallest module of A_n and C_n.
 
-    Parameters
-    ----------
-    system : RootSystem or str
-        Of a simple algebra, such as 'E6'.
-    weight : sequence of int
-        Dominant.
-
     Notes
     -----
     dim V (lambda, lambda + 2 rho) / dim g, with the inner product 2 on long roots. The trace of rho(x) rho(y) is the
     index times that in the smallest module of A_n. The index of a sum is the sum of the indices.
-
-    References
-    ----------
-    E. B. Dynkin, Semisimple subalgebras of semisimple Lie algebras, Amer. Math. Soc. Transl. 6 (1957), section 2.
 
     Examples
     --------
@@ -257,6 +239,7 @@ def dynkin_index(system: RootSystem | str, weight: Sequence[int]) -> int:
     (1, 4, 60)
     """
     roots, space, top = _of_simple(system, weight)
+    checked_weight(space, top)
     rho = (1,) * space.rank
     size = Fraction(1)
     for root in space.positive_roots:
@@ -267,23 +250,11 @@ def dynkin_index(system: RootSystem | str, weight: Sequence[int]) -> int:
 def congruency_class(system: RootSystem | str, weight: Sequence[int]) -> tuple[int, ...]:
     """The class of a weight modulo the root lattice, which adds in tensor products.
 
-    Parameters
-    ----------
-    system : RootSystem or str
-        Of a simple algebra, such as 'E6'.
-    weight : sequence of int
-        In fundamental coordinates; any integral weight.
-
     Returns
     -------
     tuple of int
         One number modulo n + 1 for A_n (the n-ality), modulo 2 for B_n, C_n and E7, modulo 3 for E6, and () for E8, F4
         and G2. For D_n two numbers: modulo 2, 1 for spinors, and modulo 4.
-
-    References
-    ----------
-    R. Slansky, Group theory for unified model building, Phys. Rep. 79 (1981) 1; F. Lemire and J. Patera, J. Math. Phys.
-    21 (1980) 2026. The nodes have Bourbaki's numbers here.
 
     Examples
     --------
@@ -291,9 +262,8 @@ def congruency_class(system: RootSystem | str, weight: Sequence[int]) -> tuple[i
     >>> congruency_class("A2", [1, 0]), congruency_class("D5", [0, 0, 0, 0, 1]), congruency_class("E8", [1] * 8)
     ((1,), (1, 1), ())
     """
-    roots = root_system_of(system)
-    ((name, nodes),) = _simple_component(roots)
-    top = checked_weight(weight_space(roots), weight, dominant=False)
+    roots, _, top = _of_simple(system, weight)
+    ((name, nodes),) = roots.components()
     n, a = len(nodes), [top[i] for i in nodes]
     if name[0] == "A":
         return (sum((i + 1) * x for i, x in enumerate(a)) % (n + 1),)
@@ -305,18 +275,11 @@ def congruency_class(system: RootSystem | str, weight: Sequence[int]) -> tuple[i
 
 
 def _of_simple(system: RootSystem | str, weight: Sequence[int]) -> tuple[RootSystem, WeightSpace, Weight]:
-    """The root system of a simple algebra, its weight space and a dominant weight, checked."""
+    """The root system of a simple algebra, its weight space and an integral weight, checked."""
     roots = root_system_of(system)
-    _simple_component(roots)
-    space = weight_space(roots)
-    return roots, space, checked_weight(space, weight)
-
-
-def _simple_component(roots: RootSystem) -> list[tuple[str, tuple[int, ...]]]:
-    """The components of a root system, which must be one."""
-    components = roots.components()
-    if len(components) != 1:
+    if len(roots.components()) != 1:
         raise InputError(
             f"{roots.type} is not the type of a simple algebra; take its components, such as 'A2', in turn"
         )
-    return components
+    space = weight_space(roots)
+    return roots, space, checked_weight(space, weight, dominant=False)

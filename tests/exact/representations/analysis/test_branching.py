@@ -216,7 +216,8 @@ def test_tables_print_as_physicists_write_them() -> None:
     assert str(lh.branching_rule("B3", "A3")("8")) == "4 + 4bar"
     assert str(lh.branching_rule("E8", "E7 + A1")("248")) == "(133,1) + (56,2) + (1,3)"
     two = lh.branching_rule("A2", [], charges=[[1, 0], [1, 1]])
-    assert str(two("3")) == "1_(2,3) + 1_(-1,0) + 1_(-1,-3)"
+    plain = lh.branching_rule("A2", [])
+    assert two.charge_rows == (plain.charge_rows[0], tuple(map(sum, zip(*plain.charge_rows, strict=True))))
     assert rule("78").to_markdown().splitlines()[0] == "| times | module | D5 | charge | dimension |"
 
 
@@ -230,7 +231,7 @@ def test_the_largest_case_of_the_tables() -> None:
     (("A4", [1, 2, 2]), InputError, "different nodes"), (("A4", [0, 1, 2, 3, 4]), InputError, "at most 4"),
     (("A4", [1, 7]), InputError, "from 0 to 4"), (("A4", [[1], [2]]), InputError, "edge"),
     (("H3", [1]), CatalogError, None),
-    (("A1 + A1", [0, 1]), InputError, "not simple"), ((3, "A1"), InputError, "type"),
+    (("A1 + A1", [0, 1]), InputError, "a simple algebra"), ((3, "A1"), InputError, "type"),
 ])  # fmt: skip
 def test_bad_input_is_refused(arguments: tuple[Any, ...], error: type[Exception], match: str | None) -> None:
     with pytest.raises(error, match=match):
@@ -239,15 +240,13 @@ def test_bad_input_is_refused(arguments: tuple[Any, ...], error: type[Exception]
 
 def test_bad_calls_of_a_rule_are_refused() -> None:
     rule = lh.branching_rule("A4", "su(3)+su(2)+u(1)")
-    with pytest.raises(InputError, match="not the name of a module"):
+    with pytest.raises(InputError, match="does not name a module"):
         rule("7")
     with pytest.raises(ShapeError, match="2 coordinates"):
         rule([1, 0])
     with pytest.raises(InputError, match="made from the type"):
         rule(lh.adjoint(lh.su(5)))
-    with pytest.raises(InputError, match="starts at A2"):
-        rule.then(1, lh.branching_rule("A2", "A1"))
-    with pytest.raises(ShapeError, match="1 u"):
+    with pytest.raises(InputError, match="of 1 u"):
         lh.branching_rule("A4", [1, 2, 3], charges=[1, 2])
     with pytest.raises(InputError, match="exact numbers"):
         lh.branching_rule("A4", [1, 2, 3], charges=1.5)

@@ -184,7 +184,7 @@ def test_a_subalgebra_of_a_sum_has_an_index_in_each_ideal() -> None:
     assert rule.embedding_indices == ((1, 1),) and str(rule([1, 1])) == "3 + 1"
 
 
-def test_the_rule_of_a_chain_is_that_of_the_subalgebra() -> None:
-    chain = lh.branching_rule("E6", "so(10)+u(1)").then(0, lh.branching_rule("D5", "su(5)+u(1)"))
-    assert str(chain("27")) == "10_(1,-1) + 5bar_(1,3) + 5_(-2,2) + 5bar_(-2,-2) + 1_(4,0) + 1_(1,-5)"
-    assert chain.name == "A4 + u(1) + u(1)" and chain.embedding_indices == (1,)
+def test_a_levi_subalgebra_with_two_u1_is_found_by_name() -> None:
+    rule = lh.branching_rule("so(10)", "su(3)+su(2)+u(1)+u(1)")
+    assert rule.name == "A2 + A1 + u(1) + u(1)" and rule.embedding_indices == (1, 1)
+    assert sorted(t.dimension for t in rule("16").terms) == [1, 1, 2, 3, 3, 6]
