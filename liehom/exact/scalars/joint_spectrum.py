@@ -231,10 +231,7 @@ def coroot_pairings(
 
 
 def rational_ratios(balls: Sequence[flint.acb], largest: int, precision: int) -> list[Fraction] | None:
-    """The ratios to the largest ball, if each contains one rational number with denominator below `largest`.
-
-    The balls are then so narrow that they contain no second one; whether the ratios are rational remains to be proved.
-    """
+    """The only rational numbers with denominators below `largest` in the ratios to the largest ball, if there are."""
     with working_precision(precision):
         unit, width = max(balls, key=lambda x: float(x.abs_lower())), flint.arb(1) / (4 * largest**2)
         ratios = [_rational(x / unit, largest, width) for x in balls]

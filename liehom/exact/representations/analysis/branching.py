@@ -41,17 +41,15 @@ from liehom.exact.representations.highest_weight.weights import (
 )
 from liehom.exact.scalars.rational import QQ
 
-Rows = tuple[tuple[int, ...], ...]
+Rows = tuple[tuple[int, ...], ...]  # with one number for each node of g
 ChargeRows = tuple[tuple[Fraction, ...], ...]
-"""Rows of numbers, one number for each node of g."""
 
 # -- names of modules -----------------------------------------------------------------------------------------
 # As in the tables of LieART (arXiv:1912.10969): of two dual modules the unbarred has the smaller congruency class, and
 # for equal classes the larger weight. Primes count the modules of one dimension by Dynkin's index, where modules that
 # duality or a symmetry of the diagram exchanges count once. The letters s, c, and v for D4, distinguish the latter.
 
-LARGEST_NAMED = 10_000_000
-"""Above this dimension a module has its weight in its name instead of primes."""
+LARGEST_NAMED = 10_000_000  # above this dimension a module has its weight in its name instead of primes
 
 
 @lru_cache(maxsize=4096)
@@ -163,8 +161,6 @@ class Branching(DisplayedTable):
     >>> table = lh.branching_rule("E6", "so(10)+u(1)")([1, 0, 0, 0, 0, 0])
     >>> print(table)
     16_1 + 10_-2 + 1_4
-    >>> [(term.dimension, str(term.charges[0])) for term in table.terms]
-    [(16, '1'), (10, '-2'), (1, '4')]
     """
 
     rule: BranchingRule
@@ -350,9 +346,6 @@ def _coroot_norm(roots: RootSystem, nodes: Sequence[int], row: Sequence[int]) ->
 
 
 # -- regular subalgebras --------------------------------------------------------------------------------------
-# A regular subalgebra is normalized by a Cartan subalgebra of g. Its roots are roots of g, and its simple roots are
-# nodes of the diagram or of the extended diagram, which may be extended again (Borel and de Siebenthal).
-
 NodeList = Sequence[int] | Sequence[Sequence[int]]
 
 

@@ -44,8 +44,7 @@ from liehom.exact.representations.highest_weight.weights import (
 from liehom.exact.scalars.exact_field import ExactMatrix, as_exact
 from liehom.exact.scalars.joint_spectrum import coroot_pairings, rational_ratios
 
-LARGEST_VALUE = 1000
-"""Bound for the integer values of roots on an element of the centre."""
+LARGEST_VALUE = 1000  # bounds the integer values of roots on an element of the centre
 CHARGE_BITS = 256  # precision of the roots from which these integers are read
 
 ChargeScale = int | str | Fraction | Sequence[int | str | Fraction] | Sequence[Sequence[int | str | Fraction]]
@@ -128,7 +127,8 @@ def _types_named(name: str) -> list[str]:
         if re.fullmatch(r"[A-G]\d+", part):
             kinds += [name for name, _ in root_system(part).components()]
         elif part.lower() not in ("u(1)", "so(2)", "u1"):
-            kinds += [RealForm.of_name(ideal).type for ideal in canonical_ideals(part)]
+            forms = map(RealForm.of_name, canonical_ideals(part))
+            kinds += [form.type for form in forms for _ in range(1 + form.is_complex)]
     return kinds
 
 
@@ -152,17 +152,15 @@ def _scaled(rows: ChargeRows, scale: ChargeScale) -> ChargeRows:
 
 # -- by name --------------------------------------------------------------------------------------------------
 def _rule_by_name(kind: str, name: str) -> BranchingRule:
-    """The rule for a maximal subalgebra with a name, else for the regular subalgebra with this name."""
+    """The rule for the maximal or regular subalgebra with a name."""
     roots, wanted = root_system(kind), _types_named(name)
     count = len(re.findall(r"(?i)\bu\(1\)|\bso\(2\)", name))
     simple, key = len(roots.components()) == 1, (sorted(wanted), count)
     maximal = maximal_subalgebras(kind) if simple else ()
-    named = [rule for rule in maximal if (sorted(rule.factors), len(rule.charge_rows)) == key]
-    if not named:
-        subsets = combinations(range(not simple, roots.rank + 1), sum(int(part[1:]) for part in wanted))
-        regular = (regular_rule(kind, part) for part in subsets if _type_of_nodes(kind, part) == sorted(wanted))
-        either = (rule if count else replace(rule, charge_rows=()) for rule in regular)
-        named = [rule for rule in either if (sorted(rule.factors), len(rule.charge_rows)) == key]
+    subsets = combinations(range(not simple, roots.rank + 1), sum(int(part[1:]) for part in wanted))
+    regular = (regular_rule(kind, part) for part in subsets if _type_of_nodes(kind, part) == sorted(wanted))
+    either = (*maximal, *(rule if count else replace(rule, charge_rows=()) for rule in regular))
+    named = [rule for rule in either if (sorted(rule.factors), len(rule.charge_rows)) == key]
     classes = {_signature(rule): rule for rule in reversed(named)}
     if not classes:
         known = ", ".join(rule.name for rule in maximal)
@@ -177,13 +175,12 @@ def _rule_by_name(kind: str, name: str) -> BranchingRule:
 @lru_cache(maxsize=4096)
 def _type_of_nodes(kind: str, nodes: tuple[int, ...]) -> list[str]:
     """The sorted types of the subdiagram of the extended diagram with given nodes."""
-    roots = root_system(kind)
-    vectors = nodes_as_roots(roots, nodes)
-    return [name for name, _ in diagram_components([[roots.pairing(a, b) for b in vectors] for a in vectors])]
+    vectors, pairing = nodes_as_roots(root_system(kind), nodes), root_system(kind).pairing
+    return [name for name, _ in diagram_components([[pairing(a, b) for b in vectors] for a in vectors])]
 
 
 def _signature(rule: BranchingRule) -> object:
-    """What two rules have in common whose subalgebras an automorphism exchanges: the sizes in all small modules."""
+    """What automorphisms preserve: the sizes of the parts of all small modules."""
     roots = root_system(rule.type)
     units = [tuple(int(i == j) for j in range(roots.rank)) for i in range(roots.rank)]
     small = [w for w in units if module_size(rule.type, w) <= roots.rank + roots.number_of_roots] or units[:1]
@@ -210,7 +207,7 @@ def _rule_of_pair(h: Subalgebra) -> BranchingRule:
     if not g.is_semisimple():
         raise InputError(f"{g!r} is not semisimple; branch from its Levi factor, or from a type")
     center = as_exact(inner.center().basis) @ as_exact(h.basis)
-    if not inner.is_reductive() or not all(semisimple_defect(g.ad(c)).is_zero() for c in center.to_rows()):
+    if not inner.is_reductive() or not all(semisimple_defect(as_exact(g.ad(c))).is_zero() for c in center.to_rows()):
         raise InputError(f"{h!r} is not reductive in {g!r}: restricted modules need not be sums of irreducible ones")
     to_g = as_exact(h.basis)
     if center.nrows:
@@ -287,7 +284,7 @@ def _charge_row(whole: RootData, place: int, order: Sequence[int]) -> tuple[Frac
 #
 # The special ones of the exceptional algebras (Dynkin, 1957) are listed with their projections of weights. Those of the
 # A1 are the diagrams of Testerman, with 2 at each node, except for 0 at node 4 or at the nodes 4 and 6. The others are
-# the solutions of the restrictions of the smallest module.
+# the solutions of the restrictions of the smallest module. Commas separate rows, semicolons subalgebras of one type.
 
 SPECIAL = {
     "G2": {"A1": "6 10"},
@@ -314,7 +311,6 @@ SPECIAL = {
         "A1": "60 88 118 174 142 108 74 38; 72 106 142 210 172 132 90 46; 92 136 182 270 220 168 114 58",
     },
 }
-"""The rows of the projection, separated by commas; several subalgebras of one type by semicolons."""
 
 
 def maximal_subalgebras(algebra: LieAlgebra | str) -> tuple[BranchingRule, ...]:
@@ -328,11 +324,7 @@ def maximal_subalgebras(algebra: LieAlgebra | str) -> tuple[BranchingRule, ...]:
     Returns
     -------
     tuple of BranchingRule
-        Regular semisimple ones, regular ones with a u(1), then special ones.
-
-    Notes
-    -----
-    The subalgebras with a u(1) are maximal among the reductive ones, and are contained in a parabolic subalgebra.
+        Regular semisimple ones, regular ones with a u(1), which a parabolic subalgebra contains, then special ones.
 
     References
     ----------
@@ -375,8 +367,7 @@ def _maximal(kind: str) -> tuple[BranchingRule, ...]:
     return (*whole, *levi, *special)
 
 
-Module = tuple[tuple[str, ...], list[tuple[Weight, ...]]]
-"""Simple types, and the parts of a module: for each part one weight for each type."""
+Module = tuple[tuple[str, ...], list[tuple[Weight, ...]]]  # types, and for each part a weight for each type
 
 
 def _special(kind: str) -> Iterator[BranchingRule]:
@@ -468,8 +459,7 @@ def _images(kind: str, weight: Weight) -> Iterator[tuple[tuple[str, ...], tuple[
 def _rule_of_module(kind: str, module: Module) -> BranchingRule:
     """The rule of a special subalgebra of a classical algebra, from the restriction of the smallest module.
 
-    Its weights are e_1, ..., e_n with or without their negatives, in the order of a linear form that is positive on the
-    positive roots of both algebras. So e_i goes to the weight number i of the restriction.
+    Its weights e_1, ..., e_n, perhaps with their negatives, go to those of the restriction in decreasing order.
     """
     factors, parts = module
     kinds, n = " + ".join(factors), int(kind[1:])

@@ -209,7 +209,6 @@ def weights_up_to(space: WeightSpace, bound: int) -> dict[Weight, int]:
     waiting = list(found)
     while waiting:
         mu = waiting.pop()
-        # the dimension grows with every coordinate
         for i in range(space.rank):
             nu = (*mu[:i], mu[i] + 1, *mu[i + 1 :])
             if nu not in found and (size := _dimension(space, nu)) <= bound:
