@@ -87,6 +87,10 @@ from liehom.exact.orbits.strata import (
     symmetric_strata as symmetric_strata,
 )
 from liehom.exact.orbits.types import orbit_types as orbit_types, structure_name as structure_name
+from liehom.exact.representations.analysis.embeddings import (
+    branching_rule as branching_rule,
+    maximal_subalgebras as maximal_subalgebras,
+)
 from liehom.exact.representations.constructions import (
     adjoint as adjoint,
     coadjoint as coadjoint,

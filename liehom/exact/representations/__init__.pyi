@@ -1,8 +1,17 @@
+from liehom.exact.representations.analysis.branching import (
+    Branching as Branching,
+    BranchingRule as BranchingRule,
+    BranchingTerm as BranchingTerm,
+)
 from liehom.exact.representations.analysis.decomposition import (
     Component as Component,
     Decomposition as Decomposition,
     HermitianForms as HermitianForms,
     IsotypicComponent as IsotypicComponent,
+)
+from liehom.exact.representations.analysis.embeddings import (
+    branching_rule as branching_rule,
+    maximal_subalgebras as maximal_subalgebras,
 )
 from liehom.exact.representations.analysis.polynomial_invariants import HilbertSeries as HilbertSeries
 from liehom.exact.representations.analysis.submodules import MaximalSubmodules as MaximalSubmodules
@@ -25,6 +34,8 @@ from liehom.exact.representations.highest_weight.characters import (
     character as character,
     decompose_character as decompose_character,
     dominant_character as dominant_character,
+    exterior_power_decomposition as exterior_power_decomposition,
+    symmetric_power_decomposition as symmetric_power_decomposition,
     tensor_product_decomposition as tensor_product_decomposition,
     weyl_dimension as weyl_dimension,
 )
@@ -43,7 +54,10 @@ from liehom.exact.representations.highest_weight.real_modules import (
     spinor_type as spinor_type,
 )
 from liehom.exact.representations.highest_weight.weights import (
+    casimir_eigenvalue as casimir_eigenvalue,
+    congruency_class as congruency_class,
     dual_weight as dual_weight,
+    dynkin_index as dynkin_index,
     frobenius_schur_indicator as frobenius_schur_indicator,
     weyl_orbit as weyl_orbit,
 )

@@ -5,6 +5,7 @@ from __future__ import annotations
 import random
 from collections.abc import Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import Any, final
 
 import flint
@@ -227,6 +228,24 @@ def coroot_pairings(
                 return None
             rows.append(known)
         return rows
+
+
+def rational_ratios(balls: Sequence[flint.acb], largest: int, precision: int) -> list[Fraction] | None:
+    """The only rational numbers with denominators below `largest` in the ratios to the largest ball, if there are."""
+    with working_precision(precision):
+        unit, width = max(balls, key=lambda x: float(x.abs_lower())), flint.arb(1) / (4 * largest**2)
+        ratios = [_rational(x / unit, largest, width) for x in balls]
+    known = [x for x in ratios if x is not None]
+    return known if len(known) == len(balls) else None
+
+
+def _rational(ball: flint.acb, largest: int, width: flint.arb) -> Fraction | None:
+    if not (ball.imag.contains(0) and ball.imag.rad() < width and ball.real.rad() < width):
+        return None
+    for d in range(1, largest):
+        if (n := (ball.real * d).unique_fmpz()) is not None:
+            return Fraction(int(n), d)
+    return None
 
 
 # Is complex conjugation the same automorphism of a number field in all its embeddings? Let K = QQ(theta) for a root

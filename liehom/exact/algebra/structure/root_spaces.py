@@ -275,8 +275,11 @@ class RootData:
         return [self.spectrum.values[index[root]] for root in self.root_system.simple_roots]
 
 
-def root_data(algebra: LieAlgebra, cartan: Subalgebra | None = None) -> RootData:
-    """The roots of a semisimple algebra on a Cartan subalgebra, by default on the one of `cartan_subalgebra`."""
+def root_data(algebra: LieAlgebra, cartan: Subalgebra | None = None, least: int = 0) -> RootData:
+    """The roots of a semisimple algebra on a Cartan subalgebra, by default on the one of `cartan_subalgebra`.
+
+    The precision is at least `least` bits.
+    """
     exact_field(algebra, "roots")
     killing = as_exact(algebra.killing_form())
     if killing.rank() < algebra.dimension:
@@ -288,7 +291,7 @@ def root_data(algebra: LieAlgebra, cartan: Subalgebra | None = None) -> RootData
     basis = as_exact(h.basis)
     form = (basis @ killing @ basis.T).inverse()
     rng = random.Random(algebra.dimension)
-    for precision in _precisions(actions):
+    for precision in _precisions(actions, least):
         spectrum = joint_spectrum(actions, [rng.randint(-WEIGHT, WEIGHT) for _ in actions], precision)
         pairing = None if spectrum is None else spectrum.cartan_integers(form)
         if spectrum is not None and pairing is not None:
@@ -297,11 +300,11 @@ def root_data(algebra: LieAlgebra, cartan: Subalgebra | None = None) -> RootData
     raise InternalError("the roots could not be separated; please report this algebra")
 
 
-def _precisions(actions: list[ExactMatrix]) -> list[int]:
+def _precisions(actions: list[ExactMatrix], least: int) -> list[int]:
     """The precisions to try, in bits: at least three times the bits of the largest entry, which is mostly enough."""
     bits = max(int(abs(x)).bit_length() for a in actions for part in a.parts for x in part.entries())
     last = max(LAST_PRECISION, MARGIN * bits)
-    return [p for k in range(last.bit_length()) if 3 * bits <= (p := FIRST_PRECISION << k) <= last]
+    return [p for k in range(last.bit_length()) if max(least, 3 * bits) <= (p := FIRST_PRECISION << k) <= last]
 
 
 def _actions(algebra: LieAlgebra, h: Subalgebra) -> list[ExactMatrix]:

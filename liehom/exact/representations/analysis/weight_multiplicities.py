@@ -9,7 +9,7 @@ from typing import Any, NamedTuple, cast
 
 from liehom.base.errors import InputError, InternalError, NotCompletelyReducibleError
 from liehom.exact.algebra.roots.root_system import diagram_components
-from liehom.exact.algebra.structure.root_spaces import root_data
+from liehom.exact.algebra.structure.root_spaces import RootData, root_data
 from liehom.exact.representations.analysis.submodules import semisimple_defect
 from liehom.exact.representations.core.representation import Representation
 from liehom.exact.representations.highest_weight.characters import decompose_character
@@ -140,7 +140,7 @@ def weight_multiplicities(rho: Representation) -> dict[Any, int]:
     """Implements `Representation.weights`."""
     g = rho.algebra
     if g.is_semisimple():
-        return _weights(rho, rho, [])
+        return weights_on(rho, rho, [])
     center = g.center()
     if not g.is_reductive():
         raise InputError(
@@ -148,15 +148,17 @@ def weight_multiplicities(rho: Representation) -> dict[Any, int]:
             "restrict to the Levi factor of levi_decomposition()"
         )
     central = [cast(ExactMatrix, rho(row)) for row in center.rows()]
-    return _weights(rho, rho.restriction(g.derived_subalgebra()), central)
+    return weights_on(rho, rho.restriction(g.derived_subalgebra()), central)
 
 
-def _weights(rho: Representation, derived: Representation, central: list[ExactMatrix]) -> dict[Any, int]:
+def weights_on(
+    rho: Representation, derived: Representation, central: list[ExactMatrix], data: RootData | None = None
+) -> dict[Any, int]:
     """Weights of the semisimple part, with charges if there are elements of the centre."""
     if rho.size == 0:
         return {}
     charges = central_charges(central) if central else [()]
-    data = root_data(derived.algebra)
+    data = data or root_data(derived.algebra)
     rank = data.cartan.dimension
     cartan = [cast(ExactMatrix, derived(row)) for row in data.cartan.rows()]
     if not cartan and not central:

@@ -120,18 +120,7 @@ def decompose_character(system: RootSystem | str, character: Mapping[Sequence[in
     {(2,): 1, (0,): 1}
     """
     space = weight_space(system)
-    rest = _dominant_part(space, character)
-    parts: dict[Weight, int] = {}
-    for top in _falling(space, rest):
-        count = rest[top]
-        if count == 0:
-            continue
-        parts[top] = count
-        for mu, m in _dominant_multiplicities(space, top).items():
-            if rest.get(mu, 0) < count * m:
-                raise InputError(f"this is the character of no module: {mu} occurs too rarely below {top}")
-            rest[mu] -= count * m
-    return parts
+    return irreducible_parts(space, _dominant_part(space, character))
 
 
 def tensor_product_decomposition(
@@ -166,12 +155,94 @@ def tensor_product_decomposition(
     if _dimension(space, first) > _dimension(space, second):
         first, second = second, first
     found: dict[Weight, int] = {}
-    for nu, m in _character(space, first).items():
-        shifted, sign = space.dominant(tuple(x + y + 1 for x, y in zip(nu, second, strict=True)))
-        if 0 not in shifted:
-            top = tuple(x - 1 for x in shifted)
-            found[top] = found.get(top, 0) + sign * m
+    _add_product(space, found, _character(space, first), second)
     return {top: found[top] for top in _falling(space, found) if found[top]}
+
+
+def symmetric_power_decomposition(system: RootSystem | str, weight: Sequence[int], k: int) -> dict[Weight, int]:
+    """The highest weights, with multiplicities, of the irreducible parts of the k-th symmetric power of a module.
+
+    Notes
+    -----
+    Newton's identity k S^k = sum_i psi^i S^(k-i), i = 1, ..., k, where the Adams operation psi^i multiplies all weights
+    by i. Its product with an irreducible module is decomposed as in `tensor_product_decomposition`.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> lh.representations.symmetric_power_decomposition("E6", [1, 0, 0, 0, 0, 0], 3)
+    {(3, 0, 0, 0, 0, 0): 1, (1, 0, 0, 0, 0, 1): 1, (0, 0, 0, 0, 0, 0): 1}
+    """
+    return _power(system, weight, k, 1)
+
+
+def exterior_power_decomposition(system: RootSystem | str, weight: Sequence[int], k: int) -> dict[Weight, int]:
+    """The highest weights, with multiplicities, of the irreducible parts of the k-th exterior power of a module.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> lh.representations.exterior_power_decomposition("E7", [0, 0, 0, 0, 0, 0, 1], 2)
+    {(0, 0, 0, 0, 0, 1, 0): 1, (0, 0, 0, 0, 0, 0, 0): 1}
+    """
+    return _power(system, weight, k, -1)
+
+
+def irreducible_parts(space: WeightSpace, dominant: Mapping[Weight, int]) -> dict[Weight, int]:
+    """`decompose_character` from the multiplicities of the dominant weights of a character."""
+    rest, parts = dict(dominant), {}
+    for top in _falling(space, rest):
+        count = rest[top]
+        if count == 0:
+            continue
+        parts[top] = count
+        for mu, m in _dominant_multiplicities(space, top).items():
+            if rest.get(mu, 0) < count * m:
+                raise InputError(f"this is the character of no module: {mu} occurs too rarely below {top}")
+            rest[mu] -= count * m
+    return parts
+
+
+def weights_up_to(space: WeightSpace, bound: int) -> dict[Weight, int]:
+    """The dominant weights of the irreducible modules whose dimension is at most a bound, with the dimensions."""
+    found = {(0,) * space.rank: 1}
+    waiting = list(found)
+    while waiting:
+        mu = waiting.pop()
+        for i in range(space.rank):
+            nu = (*mu[:i], mu[i] + 1, *mu[i + 1 :])
+            if nu not in found and (size := _dimension(space, nu)) <= bound:
+                found[nu] = size
+                waiting.append(nu)
+    return found
+
+
+def _power(system: RootSystem | str, weight: Sequence[int], k: int, sign: int) -> dict[Weight, int]:
+    """The symmetric (sign 1) or exterior (sign -1) power of degree k."""
+    space = weight_space(system)
+    weights = _character(space, checked_weight(space, weight))
+    if isinstance(k, bool) or not isinstance(k, int) or k < 0:
+        raise InputError(f"the degree of a power is an integer that is not negative, such as 2; got {k!r}")
+    powers: list[dict[Weight, int]] = [{(0,) * space.rank: 1}]
+    for degree in range(1, k + 1):
+        total: dict[Weight, int] = {}
+        for i in range(1, degree + 1):
+            adams = {tuple(i * x for x in mu): m * sign ** (i - 1) for mu, m in weights.items()}
+            for top, m in powers[degree - i].items():
+                _add_product(space, total, adams, top, m)
+        powers.append({top: total[top] // degree for top in _falling(space, total) if total[top]})
+    return powers[k]
+
+
+def _add_product(
+    space: WeightSpace, total: dict[Weight, int], weights: Mapping[Weight, int], top: Weight, times: int = 1
+) -> None:
+    """Add to a total, in place, the parts of the product of a character with the module of highest weight `top`."""
+    for nu, m in weights.items():
+        shifted, sign = space.dominant(tuple(x + y + 1 for x, y in zip(nu, top, strict=True)))
+        if 0 not in shifted:
+            part = tuple(x - 1 for x in shifted)
+            total[part] = total.get(part, 0) + sign * m * times
 
 
 # -- Weyl and Freudenthal -------------------------------------------------------------------------------------

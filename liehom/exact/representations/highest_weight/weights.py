@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import Any, final
 
 import numpy as np
@@ -199,3 +200,86 @@ def frobenius_schur_indicator(system: RootSystem | str, weight: Sequence[int]) -
     if space.dominant(tuple(-x for x in top))[0] != top:
         return 0
     return -1 if space.height(top) % 2 else 1
+
+
+def casimir_eigenvalue(system: RootSystem | str, weight: Sequence[int]) -> Fraction:
+    """The eigenvalue (lambda, lambda + 2 rho) of the quadratic Casimir element on an irreducible module, a Fraction.
+
+    Notes
+    -----
+    The inner product is 2 on long roots, so the value on the adjoint module is twice the dual Coxeter number. Half of
+    it is usual in physics, such as 4/3 for the 3 of SU(3).
+
+    Examples
+    --------
+    >>> from liehom.exact.representations import casimir_eigenvalue
+    >>> [str(casimir_eigenvalue("A2", weight)) for weight in ([1, 0], [1, 1])]
+    ['8/3', '6']
+    """
+    roots, space, top = _of_simple(system, weight)
+    shifted = tuple(x + 2 for x in checked_weight(space, top))
+    inverse = roots.fundamental_weights()
+    in_roots = [sum((x * row[i] for x, row in zip(top, inverse, strict=True)), Fraction(0)) for i in range(space.rank)]
+    double = sum((m * c * d for m, c, d in zip(shifted, in_roots, space.norms, strict=True)), Fraction(0))
+    return double / max(space.norms)
+
+
+def dynkin_index(system: RootSystem | str, weight: Sequence[int]) -> int:
+    """Dynkin's index of an irreducible module of a simple algebra, an int: 1 for the smallest module of A_n and C_n.
+
+    Notes
+    -----
+    dim V (lambda, lambda + 2 rho) / dim g, with the inner product 2 on long roots. The trace of rho(x) rho(y) is the
+    index times that in the smallest module of A_n. The index of a sum is the sum of the indices.
+
+    Examples
+    --------
+    >>> from liehom.exact.representations import dynkin_index
+    >>> dynkin_index("A4", [1, 0, 0, 0]), dynkin_index("D5", [0, 0, 0, 0, 1]), dynkin_index("E8", [0] * 7 + [1])
+    (1, 4, 60)
+    """
+    roots, space, top = _of_simple(system, weight)
+    checked_weight(space, top)
+    rho = (1,) * space.rank
+    size = Fraction(1)
+    for root in space.positive_roots:
+        size *= 1 + Fraction(space.product(top, root), space.product(rho, root))
+    return int(size * casimir_eigenvalue(roots, top) / (roots.number_of_roots + roots.rank))
+
+
+def congruency_class(system: RootSystem | str, weight: Sequence[int]) -> tuple[int, ...]:
+    """The class of a weight modulo the root lattice, which adds in tensor products.
+
+    Returns
+    -------
+    tuple of int
+        One number modulo n + 1 for A_n (the n-ality), modulo 2 for B_n, C_n and E7, modulo 3 for E6, and () for E8, F4
+        and G2. For D_n two numbers: modulo 2, 1 for spinors, and modulo 4.
+
+    Examples
+    --------
+    >>> from liehom.exact.representations import congruency_class
+    >>> congruency_class("A2", [1, 0]), congruency_class("D5", [0, 0, 0, 0, 1]), congruency_class("E8", [1] * 8)
+    ((1,), (1, 1), ())
+    """
+    roots, _, top = _of_simple(system, weight)
+    ((name, nodes),) = roots.components()
+    n, a = len(nodes), [top[i] for i in nodes]
+    if name[0] == "A":
+        return (sum((i + 1) * x for i, x in enumerate(a)) % (n + 1),)
+    if name[0] == "D":
+        return (a[-2] + a[-1]) % 2, (2 * sum(a[: n - 2 : 2]) + (n - 2) * a[-2] + n * a[-1]) % 4
+    forms = {"B": ([n - 1], 2), "C": (range(0, n, 2), 2), "E6": ([0, 2, 2, 4, 5, 5], 3), "E7": ([1, 4, 6], 2)}
+    places, order = forms.get(name, forms.get(name[0], ((), 1)))
+    return (sum(a[i] for i in places) % order,) if order > 1 else ()
+
+
+def _of_simple(system: RootSystem | str, weight: Sequence[int]) -> tuple[RootSystem, WeightSpace, Weight]:
+    """The root system of a simple algebra, its weight space and an integral weight, checked."""
+    roots = root_system_of(system)
+    if len(roots.components()) != 1:
+        raise InputError(
+            f"{roots.type} is not the type of a simple algebra; take its components, such as 'A2', in turn"
+        )
+    space = weight_space(roots)
+    return roots, space, checked_weight(space, weight, dominant=False)
