@@ -49,7 +49,8 @@ ORDER: dict[str, list[str]] = {
         "liehom.exact.pauli": "words span simple_ideals dynamical",
         "liehom.exact.representations": "invariants core rationalization highest_weight constructions analysis",
         "liehom.exact.representations.analysis": (
-            "submodules isotypic decomposition symbolic weight_multiplicities branching embeddings polynomial_invariants"
+            "submodules isotypic decomposition symbolic weight_multiplicities branching embeddings "
+            "polynomial_invariants"
         ),
         "liehom.exact.representations.core": "coordinates pair representation elements",
         "liehom.exact.representations.highest_weight": "weights characters highest_weight real_modules",
