@@ -159,3 +159,8 @@ def test_points_that_are_not_finite_are_left_out() -> None:
     y[0, -3:] = np.inf
     t, error = curve(plot_energy_drift(dataclasses.replace(sol, y=y), ENERGY))
     assert np.array_equal(t, sol.t[1:-3]) and np.isfinite(error).all()
+
+
+def test_times_are_those_since_the_first_point() -> None:
+    sol = lh.integrate(FIELD, (2, 4), [0.6, 0.0, 0.8], step="heun", dt=0.25)
+    assert np.allclose(curve(plot_energy_drift(sol, ENERGY))[0], np.arange(1, 9) / 4)
