@@ -200,7 +200,6 @@ TROUBLE = frozenset(["unkept", "failed", "near", "short", "conservation_short", 
 Piece: TypeAlias = tuple[slice, Array | None, Array]
 """Lanes, the rows (j + 1, N + 2, L) of their path, which are points, times and signed sizes, and numbers of states."""
 
-
 Task: TypeAlias = tuple[Numbers, Array, Array | None, tuple[float, float], Mapping[str, Any], int, Array | None, bool]
 """Numbers of a call, points (L, N), output times, ends of the span, numbers of args and the direction by name, number
 of steps in lockstep, points (L, N, k) at output times, and whether all steps are kept."""
