@@ -180,7 +180,7 @@ def _type_of_nodes(kind: str, nodes: tuple[int, ...]) -> list[str]:
 
 
 def _signature(rule: BranchingRule) -> object:
-    """What automorphisms preserve: the sizes of the parts of all small modules."""
+    """The sizes of the parts of all small modules, which automorphisms preserve."""
     roots = root_system(rule.type)
     units = [tuple(int(i == j) for j in range(roots.rank)) for i in range(roots.rank)]
     small = [w for w in units if module_size(rule.type, w) <= roots.rank + roots.number_of_roots] or units[:1]
@@ -276,11 +276,11 @@ def _charge_row(whole: RootData, place: int, order: Sequence[int]) -> tuple[Frac
 
 
 # -- maximal subalgebras --------------------------------------------------------------------------------------
-# Regular ones (Borel and de Siebenthal, Comment. Math. Helv. 23 (1949) 200): a node of the extended diagram with a
-# prime mark is left out, or node 0 and a node with mark 1; the latter are maximal among the reductive ones, with one
-# u(1). Special ones of so(N), sp(N), sl(N) (Dynkin, Maximal subgroups of the classical groups, 1952): sums so(p) +
-# so(q) with odd p and q, tensor products, so(N) and sp(N) in sl(N), and irreducible simple algebras, unless such an
-# algebra is contained in a larger one, which the branching rules of the larger one decide.
+# A regular one lacks a node of the extended diagram with a prime mark, or node 0 and a node with mark 1 (Borel and de
+# Siebenthal, Comment. Math. Helv. 23, 1949). The latter have one u(1) and are maximal among the reductive ones. The
+# special ones of so(N), sp(N) and sl(N) are sums so(p) + so(q) with odd p and q, tensor products, so(N) and sp(N) in
+# sl(N), and irreducible simple algebras (Dynkin, Maximal subgroups of the classical groups, 1952). An irreducible one
+# is left out if the branching rules of a larger one show that it contains it.
 #
 # The special ones of the exceptional algebras (Dynkin, 1957) are listed with their projections of weights. Those of the
 # A1 are the diagrams of Testerman, with 2 at each node, except for 0 at node 4 or at the nodes 4 and 6. The others are

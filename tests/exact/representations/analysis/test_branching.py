@@ -1,4 +1,4 @@
-"""Branching rules beside published tables, named in tests/oracles/branching_tables.json, and laws of restriction.
+"""Branching rules and published tables, named in tests/oracles/branching_tables.json, and laws of restriction.
 
 The order of equal factors, the direction of a u(1), and which of two dual modules of a factor has a bar are free.
 The same choice must do for all lines of one rule.

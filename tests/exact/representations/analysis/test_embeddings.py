@@ -1,4 +1,4 @@
-"""Rules from algebras in scrambled bases beside restricted matrices, rules by name, and maximal subalgebras."""
+"""Rules from algebras in scrambled bases and restricted matrices, rules by name, and maximal subalgebras."""
 
 import random
 from collections import Counter
@@ -62,7 +62,7 @@ def special_case(seed: int) -> tuple[Representation, Subalgebra]:
 
 
 def compared(rho: Representation, h: Subalgebra) -> None:
-    """The table of the rule beside the highest weights of the restricted matrices."""
+    """The table of the rule equals the highest weights of the restricted matrices."""
     rule = lh.branching_rule(rho.algebra, h)
     table = rule(rho)
     expected = rho.restriction(h).highest_weights()
