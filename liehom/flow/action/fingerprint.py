@@ -56,7 +56,7 @@ def fingerprint(
     action: Action, field: GeneratorField, start: Array, span: tuple[Any, Any], functions: Mapping[str, Part],
     others: Mapping[str, str], events: Callable[[], object] | None,
 ) -> str:  # fmt: skip
-    """The digests of a problem as JSON: functions part by part, "" for a part that a call changes; values; numbers."""
+    """The digests of functions part by part, of psi's values and of numbers; "" for a part that a call changes."""
     functions = {"psi": source_of(field), **functions}
     first = _digests(functions)
     if events is not None:

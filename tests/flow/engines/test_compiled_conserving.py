@@ -52,7 +52,7 @@ def test_events_of_some_trajectories_of_an_ensemble(base: lh.Step, engine: str) 
         return y[..., 0]
 
     height.terminal = 2  # type: ignore[attr-defined]
-    step, points = Conserving(base, energy), sphere(7)
+    step, points = Conserving(base, energy), sphere(4)
     options: dict[str, Any] = {"step": step, "dt": 0.1, "events": height, "engine": engine}
     if engine == "jax":
         with pytest.raises(InputError, match="events"):
