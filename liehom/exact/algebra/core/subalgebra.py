@@ -28,7 +28,7 @@ from liehom.exact.algebra.core.tables import RowsLike, coefficients
 from liehom.exact.scalars.exact_field import ExactMatrix
 from liehom.exact.scalars.field import Field, Matrix, Scalar, rows_of
 from liehom.exact.scalars.floating import FloatMatrix
-from liehom.exact.scalars.modular import independent_columns
+from liehom.exact.scalars.modular import independent_columns, invariant_hull_rank
 from liehom.exact.scalars.subspaces import Quotient, Subspace, echelon_quotient, quotient
 
 if TYPE_CHECKING:
@@ -372,6 +372,10 @@ def generated(algebra: LieAlgebra, rows: Subalgebra | RowsLike, *, ideal: bool =
     """Implements `LieAlgebra.subalgebra_generated_by` and, if `ideal`, `LieAlgebra.ideal_generated_by`."""
     n, field = algebra.dimension, algebra.field
     span = frontier = start = _span(algebra, rows)
+    if isinstance(start, ExactMatrix) and not ideal and 1 < start.nrows <= SAMPLES:
+        actions = [cast(ExactMatrix, algebra.ad(start.select(rows=[i]))).T for i in range(start.nrows)]
+        if invariant_hull_rank(start, actions) == n:  # a lower bound
+            return Subalgebra(algebra, field.identity(n), check=False)
     # a space with the start in it that the start, by brackets, maps to itself is a subalgebra (the Jacobi identity)
     while frontier.nrows and span.nrows < n:
         frontier = products(algebra, frontier if ideal else start, field.identity(n) if ideal else frontier)
