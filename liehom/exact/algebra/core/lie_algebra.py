@@ -1161,7 +1161,7 @@ class LieAlgebra(Displayed, Immutable):
 
     # -- comparison and printing -------------------------------------------------------------------------
     def describe(self) -> str:
-        """A summary: kind of algebra, real form, ranks, radical, series, Killing form.
+        """A summary: name, kind of algebra, real form, ranks, radical, series, Killing form.
 
         The first line has the canonical name of the real form, too, if the name of the algebra is another one, as in
         'su(2) = so(3)'. Over float64 only numerical facts are listed: dimensions and the Killing form.
@@ -1176,6 +1176,7 @@ class LieAlgebra(Displayed, Immutable):
           Killing form of signature (4, 6, 0) (positive, negative, zero)
         >>> print(lh.euclidean(2).describe())
         e(2), dimension 3 over QQ
+          isomorphic to A3,6
           solvable, not nilpotent
           nilradical of dimension 2, centre of dimension 0
           derived series 3 > 2 > 0, lower central series 3 > 2
