@@ -961,8 +961,8 @@ class LieAlgebra(Displayed, Immutable):
         >>> lh.bianchi("III").identify().name, lh.euclidean(2).identify().name, lh.gl(2).identify().name
         ('A2,1+R', 'A3,6', 'A3,8+R')
         >>> found = lh.algebra.almost_abelian([[1, 2], [1, 3]]).identify()
-        >>> found.name, found.homomorphism
-        ('A3,5(7 - 4*sqrt(3))', <homomorphism from A3,5(7 - 4*sqrt(3)) to a Lie algebra of dimension 3 over QQ(sqrt(3))>)
+        >>> found.name, found.homomorphism.source.field
+        ('A3,5(7 - 4*sqrt(3))', QQ(sqrt(3)))
         """
         from liehom.exact.algebra.structure.naming import identify
 
