@@ -23,6 +23,13 @@ WEIGHTS: tuple[tuple[int, int, int, str], ...] = (
         "calls in a loop over spans, landings by invariants, Python and loops from traces, for those who integrate "
         "often or large systems; the generic range condition and the invariant geometry of G/H, for pairs",
     ),
+    (
+        94200,
+        50000,
+        312,
+        "names of algebras with a radical, branching rules and Casimirs, for physicists and Lie theory; names of spaces "
+        "and geodesics, for geometers; controllability, rotations, poses and Riccati flows, for engineers",
+    ),
 )
 """Lines, statements (of Python, without docstrings) and files of Python and stubs, the latest last, and for whom."""
 SLACK = 0.005  # what has become lighter by more than this share is written down

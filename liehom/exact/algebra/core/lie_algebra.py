@@ -1017,8 +1017,8 @@ class LieAlgebra(Displayed, Immutable):
         >>> lh.bianchi("III").identify().name, lh.euclidean(2).identify().name, lh.gl(2).identify().name
         ('A2,1+R', 'A3,6', 'A3,8+R')
         >>> found = lh.algebra.almost_abelian([[1, 2], [1, 3]]).identify()
-        >>> found.name, found.homomorphism
-        ('A3,5(2 - sqrt(3))', <homomorphism from A3,5(2 - sqrt(3)) to a Lie algebra of dimension 3 over QQ(sqrt(3))>)
+        >>> found.name, found.homomorphism.source.field
+        ('A3,5(7 - 4*sqrt(3))', QQ(sqrt(3)))
         """
         from liehom.exact.algebra.structure.naming import identify
 
@@ -1217,7 +1217,7 @@ class LieAlgebra(Displayed, Immutable):
 
     # -- comparison and printing -------------------------------------------------------------------------
     def describe(self) -> str:
-        """A summary: kind of algebra, real form, ranks, radical, series, Killing form.
+        """A summary: name, kind of algebra, real form, ranks, radical, series, Killing form.
 
         The first line has the canonical name of the real form, too, if the name of the algebra is another one, as in
         'su(2) = so(3)'. Over float64 only numerical facts are listed: dimensions and the Killing form.
@@ -1232,6 +1232,7 @@ class LieAlgebra(Displayed, Immutable):
           Killing form of signature (4, 6, 0) (positive, negative, zero)
         >>> print(lh.euclidean(2).describe())
         e(2), dimension 3 over QQ
+          isomorphic to A3,6
           solvable, not nilpotent
           nilradical of dimension 2, centre of dimension 0
           derived series 3 > 2 > 0, lower central series 3 > 2

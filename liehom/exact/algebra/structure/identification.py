@@ -25,6 +25,7 @@ from liehom.exact.algebra.structure.ideals import (
     field_places,
 )
 from liehom.exact.algebra.structure.levi import levi_decomposition
+from liehom.exact.algebra.structure.naming import identify
 from liehom.exact.algebra.structure.root_spaces import cartan_subalgebra, root_data
 
 # Complex type and real form of a semisimple algebra by name, exactly and in any basis.
@@ -183,7 +184,7 @@ def _restricted_roots(form: RealForm) -> str:
 
 def _with_radical(algebra: LieAlgebra) -> list[str]:
     (factor, radical), center, nilradical = algebra.levi_decomposition(), algebra.center(), algebra.nilradical()
-    lines = []
+    lines = [f"isomorphic to {name}"] if (name := small_name(algebra)) not in ("", algebra.name) else []
     if radical.dimension == algebra.dimension:
         lines.append(_solvable_kind(algebra, nilradical))
     else:
@@ -193,6 +194,16 @@ def _with_radical(algebra: LieAlgebra) -> list[str]:
         lines.append(f"Levi factor: {semisimple_lines(levi)[0]}")
     lines.append(f"nilradical of dimension {nilradical.dimension}, centre of dimension {center.dimension}")
     return lines + _series(algebra)
+
+
+def small_name(algebra: LieAlgebra) -> str:
+    """The name of an algebra of dimension at most 6 in the tables, an empty string if that is unknown."""
+    if algebra.dimension > 6:
+        return ""
+    try:
+        return identify(algebra).name
+    except UndecidedError:
+        return ""
 
 
 def _solvable_kind(algebra: LieAlgebra, nilradical: Subalgebra) -> str:

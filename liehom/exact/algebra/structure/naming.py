@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cache
+from functools import cache, lru_cache
 from itertools import product
 from typing import NoReturn, final
 
@@ -244,7 +244,7 @@ def _nilpotent_candidates(algebra: LieAlgebra) -> Iterator[Option]:
                     yield row, values, [], {}
 
 
-@cache
+@lru_cache(maxsize=256)
 def _kind(algebra: LieAlgebra) -> tuple[int, ...]:
     """Dimensions of the derived algebra, the nilradical and its series, the same for all parameters of a row."""
     nilradical = algebra.nilradical().as_algebra()
