@@ -70,7 +70,7 @@ def test_path_that_leads_nowhere_is_an_error(text: str) -> None:
 
 
 def test_docstring_means_members_of_its_own_class_first_and_parameters_never() -> None:
-    assert NAMES.meant("order", "liehom.flow.methods.Heun") == "liehom.flow.methods.Heun.order"
+    assert NAMES.meant("order", "liehom.flow.methods.RKMK") == "liehom.flow.methods.RKMK.order"
     assert NAMES.meant("order", "liehom.flow.methods.Composition") is None  # a parameter there
     assert (
         NAMES.meant("quotient", "liehom.exact.algebra.Subalgebra.places") == "liehom.exact.algebra.Subalgebra.quotient"

@@ -130,7 +130,7 @@ def form_of(
     return shape, numbers.form, t_eval is None, form, None if events is None else events_key(events)
 
 
-def _form_of_leaf(path: str, x: Any) -> Hashable:  # noqa: ANN401 - a leaf may be anything
+def _form_of_leaf(path: str, x: object) -> Hashable:
     """The place, the type and the shape of a leaf; a number is not of the type of anything that is refused."""
     inner = x.value if isinstance(x, PerTrajectory) else x
     return path, type(x), type(inner), getattr(inner, "dtype", None), getattr(inner, "shape", None)
