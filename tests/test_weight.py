@@ -27,8 +27,8 @@ WEIGHTS: tuple[tuple[int, int, int, str], ...] = (
         94200,
         50000,
         312,
-        "names of algebras with a radical, branching rules and Casimirs, for physicists and Lie theory; names of spaces "
-        "and geodesics, for geometers; controllability, rotations, poses and Riccati flows, for engineers",
+        "names of algebras with a radical, branching rules and Casimirs, for physicists and Lie theory; names of "
+        "spaces and geodesics, for geometers; controllability, rotations and Riccati flows, for engineers",
     ),
 )
 """Lines, statements (of Python, without docstrings) and files of Python and stubs, the latest last, and for whom."""

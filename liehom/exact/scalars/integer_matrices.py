@@ -188,7 +188,7 @@ def _weights(n: int) -> flint.fmpz_mat:
 def bounded_echelon(matrix: flint.fmpz_mat) -> tuple[flint.fmpz_mat, flint.fmpz, int]:
     """Reduced echelon form over a denominator, and the rank; `LimitError` if its minors may need too much memory."""
     rank, columns = matrix.nrows(), matrix.ncols()
-    # the bits of one combination of the columns are those of the largest entry, but for a few
+    # one combination of the columns has only a few bits more or less than the largest entry
     bits = max((x.bit_length() for x in (matrix * _weights(columns).transpose()).entries()), default=0)
     if bits > LONG_ENTRIES:
         what = f"the echelon form of a {rank} x {columns} matrix, {UNINTERRUPTED}"

@@ -1,4 +1,4 @@
-"""Matrices of polynomials: generic rank, minors, and where the rank drops; polynomials that linear fields annihilate.
+"""Matrices of polynomials (generic rank, minors, where the rank drops), and polynomials that linear fields annihilate.
 
 Minors are computed without division, by expansion along columns, one subset of rows after another. M(x) = x_0 M_0 + ...
 + x_{m-1} M_{m-1} is a matrix of linear forms over QQ or a real number field, whose generator is one more variable

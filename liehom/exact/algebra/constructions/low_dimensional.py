@@ -3,8 +3,8 @@
 The names A_{n,k} are those of Mubarakzyanov's and Morozov's classifications in the form of Patera, Sharp, Winternitz
 and Zassenhaus ("Invariants of real low dimension Lie algebras", J. Math. Phys. 17 (1976) 986). The tests compare the
 nilpotent rows with the list of Cicalò, de Graaf and Schneider ("Six-dimensional nilpotent Lie algebras", Linear Algebra
-Appl. 436 (2012) 163). The rows A5,7 to A5,40 are checked by their mathematics: that they satisfy the Jacobi identity,
-that no two are isomorphic, and that random algebras are in the table. Their numbers were not compared with the paper.
+Appl. 436 (2012) 163). The numbers and normal forms of the rows A5,7 to A5,40 were not compared with the paper. They are
+checked as algebras: the Jacobi identity holds for all parameters, and samples of pairs of rows are not isomorphic.
 """
 
 from __future__ import annotations
@@ -122,7 +122,7 @@ _COMPARE = {
 @final
 @dataclass(frozen=True, slots=True, eq=False)
 class Row:
-    """A class of the table; coefficients are affine in the parameters, {parameter or "": integer}."""
+    """A class of the table, with coefficients {parameter or "": integer} that are affine in the parameters."""
 
     dimension: int
     number: int

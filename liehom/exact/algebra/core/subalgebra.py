@@ -373,7 +373,7 @@ def generated(algebra: LieAlgebra, rows: Subalgebra | RowsLike, *, ideal: bool =
     n, field = algebra.dimension, algebra.field
     span = frontier = start = _span(algebra, rows)
     if isinstance(start, ExactMatrix) and not ideal and 1 < start.nrows <= SAMPLES:
-        actions = [cast(ExactMatrix, algebra.ad(start.select(rows=[i]))).T for i in range(start.nrows)]
+        actions = [algebra.ad(start.select(rows=[i])).T for i in range(start.nrows)]
         if invariant_hull_rank(start, actions) == n:  # a lower bound
             return Subalgebra(algebra, field.identity(n), check=False)
     # a space with the start in it that the start, by brackets, maps to itself is a subalgebra (the Jacobi identity)
