@@ -40,6 +40,7 @@ SAMPLES: dict[str, Callable[[], object]] = {
     "RealForm": lambda: lh.RealForm.of_name("so(4,1)"),
     "Decomposition": lambda: lh.defining(lh.so(3)).tensor(lh.defining(lh.so(3))).decomposition(),
     "HighestWeightModule": lambda: lh.highest_weight_module("A2", [1, 0]),
+    "Branching": lambda: lh.branching_rule("E6", "so(10)+u(1)")([1, 0, 0, 0, 0, 0]),
     "RealModule": lambda: lh.real_module("su(2,1)", [1, 0]),
     "Stratum": lambda: lh.symmetric_strata(3)[1],
     "Subspace": lambda: lh.scalars.Subspace(lh.QQ, [[1, 2]], 2),

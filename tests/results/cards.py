@@ -37,7 +37,7 @@ def described(make: Callable[[], Any], seed: str) -> dict[str, Any]:
     algebra = make()
     g = algebra.change_of_basis(change(algebra.field, algebra.dimension, random.Random(seed)))
     made: dict[str, Any] = {
-        "card": g.describe(),
+        "card": "\n".join(x for x in g.describe().splitlines() if "isomorphic to" not in x),  # newer than 0.1.0
         "brackets": Long(brackets(g)),
         "Killing form": rows(g.killing_form(), g.field),
         "Killing signature": str(tuple(g.killing_signature())),

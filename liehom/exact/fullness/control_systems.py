@@ -11,6 +11,7 @@ from functools import cached_property
 from typing import Literal, final
 
 from liehom.base.errors import InputError, UndecidedError
+from liehom.base.objects import Immutable
 from liehom.exact.algebra.constructions.families import affine_of
 from liehom.exact.algebra.core.lie_algebra import LieAlgebra
 from liehom.exact.algebra.linear.complex_matrices import list_of_matrices
@@ -87,7 +88,7 @@ class Reach:
 
 
 @final
-class Controllability:
+class Controllability(Immutable):
     """Where a bilinear control system is transitive and controllable, a result of `controllability`.
 
     Attributes

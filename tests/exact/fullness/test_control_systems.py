@@ -48,7 +48,7 @@ KNOWN = {
         "sl(2,R)",
         (YES, NO, NO, NO),
     ),
-    "a triangular system": ([[0, 1], [0, 0]], [[[1, 0], [0, 0]]], False, "solvable(2)", (OPEN, NO, NO, NO)),
+    "a triangular system": ([[0, 1], [0, 0]], [[[1, 0], [0, 0]]], False, "A2,1", (OPEN, NO, NO, NO)),
     "a spiral": ([[1, -1], [1, 1]], [], False, "R", (OPEN, NO, YES, YES)),
     "two frequencies": (
         [[0, 1, 0, 0], [-1, 0, 0, 0], [0, 0, 0, "sqrt(2)"], [0, 0, "-sqrt(2)", 0]],

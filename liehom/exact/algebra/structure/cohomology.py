@@ -50,12 +50,12 @@ class CochainComplex:
 
     size: int
 
-    __slots__ = ("_differentials", "algebra", "matrices", "size", "tables")
+    __slots__ = ("_differentials", "_entries", "algebra", "matrices", "size")
 
     def __init__(self, algebra: LieAlgebra, matrices: MatricesLike | None = None, *, size: int | None = None) -> None:
         self.algebra: LieAlgebra = algebra
         self._differentials: dict[int, Matrix] = {}
-        self.tables = cache(self._tables)
+        self._entries: dict[int, Tables] = {}
         self.matrices: tuple[Matrix, ...] | None = None
         self.size = 1
         if matrices is not None:
@@ -102,8 +102,13 @@ class CochainComplex:
         error = math.hypot(table.error * math.sqrt(occurrences), action * math.sqrt(comb(n - 1, degree)))
         return FloatMatrix(field, dense, error)
 
+    def tables(self, degree: int) -> Tables:
+        """The non-zero entries of d on k-cochains, computed once."""
+        if degree not in self._entries:
+            self._entries[degree] = self._tables(degree)
+        return self._entries[degree]
+
     def _tables(self, degree: int) -> Tables:
-        """The non-zero entries of d on k-cochains."""
         if (length := self.length(degree + 1)) > MAX_COCHAINS:
             raise InputError(
                 f"the cochains of degree {degree + 1} have {length} coordinates, more than {MAX_COCHAINS}; a smaller "

@@ -184,7 +184,8 @@ def _restricted_roots(form: RealForm) -> str:
 
 def _with_radical(algebra: LieAlgebra) -> list[str]:
     (factor, radical), center, nilradical = algebra.levi_decomposition(), algebra.center(), algebra.nilradical()
-    lines = [f"isomorphic to {name}"] if (name := small_name(algebra)) not in ("", algebra.name) else []
+    name = small_name(algebra) if center.dimension < radical.dimension else ""  # else the lines below name it
+    lines = [f"isomorphic to {name}"] if name not in ("", algebra.name) else []
     if radical.dimension == algebra.dimension:
         lines.append(_solvable_kind(algebra, nilradical))
     else:

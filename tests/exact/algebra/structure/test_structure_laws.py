@@ -62,7 +62,7 @@ def invariants(g: LieAlgebra) -> dict[str, Any]:
         "kinds": (g.is_solvable(), g.is_nilpotent(), g.is_semisimple(), g.is_simple()),
         "derivations": g.derivations().dimension,
         "cohomology": [g.cohomology(k).dimension for k in range(3)],
-        "card": g.describe().splitlines()[1:],
+        "card": [line for line in g.describe().splitlines()[1:] if "isomorphic to" not in line],
     }
 
 
@@ -178,7 +178,8 @@ def test_an_ideal_that_splits_over_the_reals_only() -> None:
 
 def test_semisimple_methods_raise_on_other_algebras() -> None:
     g = lh.euclidean(3)
-    for question in (g.root_system, g.cartan_decomposition, lambda: g.is_isomorphic(lh.so(4))):
+    assert not g.is_isomorphic(lh.so(4))
+    for question in (g.root_system, g.cartan_decomposition):
         with pytest.raises(InputError, match=r"semisimple|radical"):
             question()
     with pytest.raises(InputError, match="semisimple"):
