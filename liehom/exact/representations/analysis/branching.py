@@ -151,7 +151,7 @@ def _latex(term: BranchingTerm) -> str:
 @final
 @dataclass(frozen=True, slots=True)
 class Branching(DisplayedTable):
-    """The restriction of a module to a subalgebra; ``str(...)`` is a sum such as '16_1 + 10_-2 + 1_4'.
+    """The restriction of a module to a subalgebra; ``str(...)`` is a sum such as ``16_1 + 10_-2 + 1_4``.
 
     Its `terms` are ordered by decreasing dimension, then by decreasing charges.
 
