@@ -858,20 +858,8 @@ class LieAlgebra(Displayed, Immutable):
         """The Jordan decomposition (s, n) of an element, two arrays (dimension,) with x = s + n and [s, n] = 0.
 
         ad s is semisimple, and ad n is nilpotent (Humphreys, Introduction to Lie Algebras, 5.4). In a reductive
-        algebra it exists, and it is unique with n in [g, g]: the central part of x belongs to s.
-
-        Parameters
-        ----------
-        x : element
-            As for `row`.
-
-        Raises
-        ------
-        InputError
-            If the algebra is not reductive, and either s and n do not exist in it, or it has a centre, up to which
-            they are not unique.
-        UndecidedError
-            Over float64.
+        algebra s and n exist, and they are unique with n in [g, g]. In other algebras an `InputError` is raised if they
+        do not exist, or if there is a centre, up to which they are not unique.
 
         Examples
         --------
@@ -888,21 +876,8 @@ class LieAlgebra(Displayed, Immutable):
     def sl2_triple(self, e: ElementLike) -> tuple[npt.NDArray[Any], npt.NDArray[Any], npt.NDArray[Any]]:
         """An sl2-triple (h, e, f) through an element, arrays with [h, e] = 2 e, [h, f] = -2 f and [e, f] = h.
 
-        In a semisimple algebra each nilpotent e other than 0 has one, by the theorem of Jacobson and Morozov
-        (Collingwood and McGovern, Nilpotent Orbits in Semisimple Lie Algebras, 3.3). In other algebras one is returned
-        if it exists.
-
-        Parameters
-        ----------
-        e : element
-            As for `row`.
-
-        Raises
-        ------
-        InputError
-            If e belongs to no triple: it is 0, or not nilpotent, or the algebra is not semisimple.
-        UndecidedError
-            Over float64.
+        In a semisimple algebra each nilpotent e other than 0 belongs to one, by the theorem of Jacobson and Morozov
+        (Collingwood and McGovern, Nilpotent Orbits in Semisimple Lie Algebras, 3.3). Other algebras are searched, too.
 
         Examples
         --------

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import pairwise, product
 from math import exp, pi, sqrt
+from operator import attrgetter
 from typing import NamedTuple, final
 
 import numpy as np
@@ -103,12 +104,9 @@ def sl2_triple(algebra: LieAlgebra, e: ElementLike) -> SL2Triple:
         return triple_through(algebra, row)
     except SingularError:
         lower = algebra.ad(row).characteristic_coefficients()[:-1]
-    if row.is_zero():
-        why = "e = 0 and h = 0 would follow"
-    elif any(c != 0 for c in lower):
-        why = "e is not nilpotent: ad e has an eigenvalue that is not 0"
-    else:
-        why = "e is nilpotent, but -2 e is not of the form [e, [e, f]], as it is in a semisimple algebra"
+    why = "it is nilpotent, but not of the form [e, [e, f]], as it is in a semisimple algebra"
+    if row.is_zero() or any(c != 0 for c in lower):
+        why = "it is 0" if row.is_zero() else "it is not nilpotent, since ad e has an eigenvalue that is not 0"
     raise InputError(f"{algebra.show(e)} belongs to no sl2-triple of {algebra!r}: {why}")
 
 
@@ -167,8 +165,7 @@ class NilpotentOrbit:
         The dimension, over the complex numbers for a complex type, else over the reals. The orbit of a real form has
         that of the complex orbit.
     partition : tuple of int
-        For classical algebras the sizes of the Jordan blocks in the defining module, or in its complexification, else
-        empty. The algebra 'so(3)' has the module of dimension 3.
+        For classical algebras the sizes of the Jordan blocks in the defining module or its complexification, else empty.
     rows : tuple of str
         The rows of the signed Young diagram, such as ``('+-+', '-')``, for real forms that preserve a form, else empty.
     numeral : str
@@ -218,15 +215,13 @@ def nilpotent_orbits(name: str) -> list[NilpotentOrbit]:
     [('+', '+', '+', '+', '-'), ('+-+', '+', '+')]
     """
     if isinstance(name, str) and ("(" in name or name.strip()[:1].islower()):
-        return sorted(_real_orbits(RealForm.of_name(name)), key=_order)
-    parts = parse_type(name)
-    if len(parts) != 1 or parts[0] == ("D", 2):
-        raise CatalogError(f"{name!r} is not the type of a simple Lie algebra, such as A1, B2, C3, D4, E8, F4, G2")
-    return sorted(_complex_orbits(*parts[0]), key=_order)
-
-
-def _order(orbit: NilpotentOrbit) -> tuple[int, tuple[int, ...], tuple[str, ...], str]:
-    return orbit.dimension, orbit.diagram, tuple(sorted(orbit.rows, key=len, reverse=True)), orbit.numeral
+        orbits = _real_orbits(RealForm.of_name(name))
+    else:
+        parts = parse_type(name)
+        if len(parts) != 1 or parts[0] == ("D", 2):
+            raise CatalogError(f"{name!r} is not the type of a simple Lie algebra, such as A1, B2, C3, D4, E8, F4, G2")
+        orbits = _complex_orbits(*parts[0])
+    return sorted(orbits, key=attrgetter("dimension", "diagram"))
 
 
 def _complex_orbits(letter: str, rank: int) -> Iterator[NilpotentOrbit]:
@@ -322,9 +317,16 @@ def _has_triple(algebra: LieAlgebra, h: ExactMatrix, values: IntegerArray) -> bo
 # the stabilizer is generated, up to connected groups, by the reflections of rows of odd length: they invert the
 # orientation of R^p if the row has an odd number of +, else that of R^q.
 
-RULES = {"su": ("signed", "signed"), "sp": ("signed", "plus"), "so*": ("plus", "signed"), "so": ("signed", "pairs")}
-RULES |= {"sp R": ("balanced", "signed")}
+ROWS = {"su": ("signed", "signed"), "sp": ("signed", "plus"), "so*": ("plus", "signed"), "so": ("signed", "pairs")}
+ROWS |= {"sp R": ("balanced", "signed")}
 """For each kind of algebra with a form, which signs the rows of odd and those of even length have."""
+STARTS: dict[str, Callable[[int], range]] = {
+    "signed": lambda m: range(m, -1, -1),
+    "plus": lambda m: range(m, m + 1),
+    "balanced": lambda m: range(m // 2, m // 2 + 1 - m % 2),
+    "pairs": lambda m: range(m, m + 1 - m % 2),
+}
+"""How many of m rows with the same length begin with +."""
 
 
 def _real_orbits(form: RealForm) -> Iterator[NilpotentOrbit]:
@@ -332,27 +334,24 @@ def _real_orbits(form: RealForm) -> Iterator[NilpotentOrbit]:
     kind, numbers, letter = parse_name(form.name)
     series, rank = parse_type(form.type)[0]
     if letter == "C":
-        orbits = _complex_orbits(series, rank)
-        yield from (NilpotentOrbit(x.diagram, 2 * x.dimension, x.partition, (), x.numeral) for x in orbits)
-    elif kind in EXCEPTIONAL_CHARACTERS and form.is_compact:
-        yield NilpotentOrbit((0,) * rank, 0)
-    elif kind in EXCEPTIONAL_CHARACTERS:
+        yield from (replace(orbit, dimension=2 * orbit.dimension) for orbit in _complex_orbits(series, rank))
+        return
+    if kind in EXCEPTIONAL_CHARACTERS:
+        if form.is_compact:
+            yield NilpotentOrbit((0,) * rank, 0)
+            return
         raise CatalogError(
             f"the nilpotent orbits of {form.name} are not known to the library, which lists those of classical real "
             f"forms and of complex algebras: nilpotent_orbits({form.type!r})"
         )
-    else:
-        system = root_system(form.type)
-        black = form.satake.black
-        for partition, rows, times in _real_diagrams(kind, numbers, letter):
-            # the diagrams are 0 at the black nodes of the Satake diagram (Okuda, Classification of semisimple symmetric
-            # spaces with proper SL(2,R)-actions)
-            diagrams = _classical_diagrams("B" if kind == "so" and sum(numbers) == 3 else series, partition)
-            diagrams = [diagram for diagram in diagrams if not any(diagram[i] for i in black)]
-            numerals = ("I", "II", "III", "IV")[:times] if times > 1 else ("",)
-            for i, numeral in enumerate(numerals):
-                diagram = diagrams[i * len(diagrams) // times]
-                yield NilpotentOrbit(diagram, dimension_of_orbit(system, diagram), partition, rows, numeral)
+    system, black = form.root_system(), form.satake.black
+    for partition, rows, times in _real_diagrams(kind, numbers, letter):
+        diagrams = _classical_diagrams("B" if kind == "so" and sum(numbers) == 3 else series, partition)
+        # h is conjugate to an element of a split torus, on which black nodes of the Satake diagram vanish
+        diagrams = [diagram for diagram in diagrams if not any(diagram[i] for i in black)]
+        for i in range(times):
+            diagram, numeral = diagrams[i * len(diagrams) // times], ("I", "II", "III", "IV")[i] if times > 1 else ""
+            yield NilpotentOrbit(diagram, dimension_of_orbit(system, diagram), partition, rows, numeral)
 
 
 def _real_diagrams(
@@ -366,23 +365,10 @@ def _real_diagrams(
         if kind == "sl":
             yield partition, (), 1 if letter == "H" or any(d % 2 for d in partition) else 2
             continue
-        rules = RULES["sp R" if letter else kind]
-        for starts in product(*(_starts(rules[d % 2 == 0], m) for d, m in parts)):
+        signs = ROWS["sp R" if letter else kind]
+        for starts in product(*(STARTS[signs[d % 2 == 0]](m) for d, m in parts)):
             rows = tuple(("+-" * d)[i >= a :][:d] for (d, m), a in zip(parts, starts, strict=True) for i in range(m))
             plus = [row.count("+") for row in rows]
             if kind == "so*" or letter or sum(plus) == numbers[0]:
-                times = 1
-                if kind == "so" and any(d > 1 for d in partition):
-                    turned = {n % 2 for n, row in zip(plus, rows, strict=True) if len(row) % 2}
-                    times = 4 >> len(turned)
-                yield partition, rows, times
-
-
-def _starts(rule: str, m: int) -> range:
-    """The possible numbers of rows, of m ones with the same length, that begin with +."""
-    if rule == "signed":
-        return range(m, -1, -1)
-    if rule == "plus":
-        return range(m, m + 1)
-    half = range(m // 2, m // 2 + 1) if rule == "balanced" else range(m, m + 1)
-    return half if m % 2 == 0 else range(0)
+                turned = {count % 2 for count, row in zip(plus, rows, strict=True) if len(row) % 2}
+                yield partition, rows, 4 >> len(turned) if kind == "so" and partition[0] > 1 else 1
