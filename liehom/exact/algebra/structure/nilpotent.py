@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -14,11 +15,11 @@ import numpy as np
 
 from liehom.base.budget import within
 from liehom.base.errors import CatalogError, InputError, InternalError, SingularError
-from liehom.base.typing import ElementLike, IntegerArray
+from liehom.base.typing import ElementLike
 from liehom.exact.algebra.core.lie_algebra import LieAlgebra
 from liehom.exact.algebra.roots.chevalley import chevalley
 from liehom.exact.algebra.roots.real_form import EXCEPTIONAL_CHARACTERS, RealForm, parse_name
-from liehom.exact.algebra.roots.root_system import RootSystem, parse_type, root_system
+from liehom.exact.algebra.roots.root_system import parse_type, root_system
 from liehom.exact.algebra.structure.centroid import evaluate, exact_field
 from liehom.exact.scalars.exact_field import ExactMatrix, as_exact
 from liehom.exact.scalars.polynomial import Polynomial
@@ -48,7 +49,11 @@ def jordan_decomposition(algebra: LieAlgebra, x: ElementLike) -> tuple[ExactMatr
             "centre; ask for that of the class of x in algebra.quotient(algebra.center())"
         )
     action = algebra.ad(row)
-    n = _element_acting_by(algebra, space, action - _semisimple_part(action))
+    f = Polynomial(field, action.characteristic_coefficients())
+    f, semisimple = f // f.gcd(f.derivative()), action
+    while not (value := evaluate(f, semisimple)).is_zero():
+        semisimple = semisimple - evaluate(f.derivative(), semisimple).solve(value)
+    n = _element_acting_by(algebra, space, action - semisimple)
     if n is None:
         raise InputError(
             f"{algebra.show(x)} has no Jordan decomposition in {algebra!r}: the semisimple part of ad x is a "
@@ -57,20 +62,9 @@ def jordan_decomposition(algebra: LieAlgebra, x: ElementLike) -> tuple[ExactMatr
     return row - n, n
 
 
-def _semisimple_part(action: ExactMatrix) -> ExactMatrix:
-    """The semisimple part of a square matrix, a polynomial in it."""
-    f = Polynomial(action.field, action.characteristic_coefficients())
-    f = f // f.gcd(f.derivative())
-    while not (value := evaluate(f, action)).is_zero():
-        action = action - evaluate(f.derivative(), action).solve(value)
-    return action
-
-
 def _element_acting_by(algebra: LieAlgebra, space: ExactMatrix, action: ExactMatrix) -> ExactMatrix | None:
     """The row (1, n) in the span of `space`, which meets the centre in 0, that acts by a matrix on columns, or None."""
     field, n, rng = space.field, algebra.dimension, np.random.default_rng(algebra.dimension)
-    if action.is_zero():
-        return field.zeros(1, n)
     tests, images = field.zeros(0, n), field.zeros(space.nrows, 0)
     while images.rank() < space.nrows:
         y = field.from_integers(rng.integers(-LARGE, LARGE, n).tolist(), 1, n)
@@ -148,6 +142,9 @@ def _small_semisimple(algebra: LieAlgebra, e: ExactMatrix, action: ExactMatrix) 
 # solution f of [e, f] = h for one e in g_2 proves that it belongs to an orbit.  The number of orbits is known (8.4), so
 # that none is missing if the random e, generic in g_2, lead to as many.
 
+Ints = tuple[int, ...]
+Rows = tuple[str, ...]
+
 EXCEPTIONAL_ORBITS = {"G2": 5, "F4": 16, "E6": 21, "E7": 45, "E8": 70}
 
 
@@ -162,10 +159,9 @@ class NilpotentOrbit:
         The weighted Dynkin diagram of the orbit, or of the complex orbit that contains the real one: 0, 1 or 2 for each
         simple root, in Bourbaki's order.
     dimension : int
-        The dimension, over the complex numbers for a complex type, else over the reals. The orbit of a real form has
-        that of the complex orbit.
+        The dimension, over the complex numbers for a complex type, else over the reals.
     partition : tuple of int
-        For classical algebras the sizes of the Jordan blocks in the defining module or its complexification, else empty.
+        For classical algebras the sizes of Jordan blocks in the defining module or its complexification, else empty.
     rows : tuple of str
         The rows of the signed Young diagram, such as ``('+-+', '-')``, for real forms that preserve a form, else empty.
     numeral : str
@@ -192,19 +188,13 @@ def nilpotent_orbits(name: str) -> list[NilpotentOrbit]:
     ----------
     name : str
         The type of a complex algebra, such as 'A3' or 'E8', or the name of a real form, such as 'so(4,1)' or 'sl(3,R)'.
-
-    Raises
-    ------
-    CatalogError
-        For noncompact real forms of exceptional types, whose orbits are not known to the library, and for algebras that
-        are not simple.
+        Noncompact real forms of exceptional types, and algebras that are not simple, raise `CatalogError`.
 
     Notes
     -----
     Complex orbits are listed by weighted Dynkin diagrams. In exceptional types each diagram is proved by an sl2-triple,
     and their number is that of Collingwood and McGovern, Nilpotent Orbits in Semisimple Lie Algebras, 8.4. Orbits of
-    classical real forms are listed by signed Young diagrams (9.3 there). Which of several orbits has which numeral is
-    not specified.
+    classical real forms are listed by signed Young diagrams (9.3). Which orbit has which numeral is not specified.
 
     Examples
     --------
@@ -226,25 +216,24 @@ def nilpotent_orbits(name: str) -> list[NilpotentOrbit]:
 
 def _complex_orbits(letter: str, rank: int) -> Iterator[NilpotentOrbit]:
     """The orbits of a simple complex algebra."""
-    system = root_system(f"{letter}{rank}")
     if letter in "EFG":
-        yield from (NilpotentOrbit(d, dimension_of_orbit(system, d)) for d in _exceptional_diagrams(system.type))
+        yield from (_orbit(f"{letter}{rank}", diagram) for diagram in _exceptional_diagrams(f"{letter}{rank}"))
         return
-    for parts in _partitions({"A": rank + 1, "B": 2 * rank + 1}.get(letter, 2 * rank), 1):
-        partition = tuple(d for d, m in parts for _ in range(m))
-        if letter == "A" or all(m % 2 == 0 for d, m in parts if d % 2 == (letter == "C")):
+    for partition in _partitions({"A": rank + 1, "B": 2 * rank + 1}.get(letter, 2 * rank), 1):
+        parity = letter == "C"  # of the parts with even multiplicities
+        if letter == "A" or all(m % 2 == 0 for d, m in Counter(partition).items() if d % 2 == parity):
             diagrams = _classical_diagrams(letter, partition)
             for numeral, diagram in zip(("I", "II") if len(diagrams) > 1 else ("",), diagrams, strict=True):
-                yield NilpotentOrbit(diagram, dimension_of_orbit(system, diagram), partition, (), numeral)
+                yield _orbit(f"{letter}{rank}", diagram, partition, (), numeral)
 
 
-def dimension_of_orbit(system: RootSystem, diagram: tuple[int, ...]) -> int:
-    """The complex dimension of the orbit with a weighted Dynkin diagram."""
-    values = system.root_matrix() @ np.array(diagram, dtype=np.int64)
-    return int(((values != 0) & (values != 1)).sum())
+def _orbit(type_name: str, diagram: Ints, partition: Ints = (), rows: Rows = (), numeral: str = "") -> NilpotentOrbit:
+    """The orbit with these data; its dimension is the number of roots with values other than 0 and 1."""
+    values = root_system(type_name).root_matrix() @ np.array(diagram, dtype=np.int64)
+    return NilpotentOrbit(diagram, int(((values != 0) & (values != 1)).sum()), partition, rows, numeral)
 
 
-def _classical_diagrams(letter: str, partition: tuple[int, ...]) -> list[tuple[int, ...]]:
+def _classical_diagrams(letter: str, partition: Ints) -> list[Ints]:
     """The weighted diagrams of the orbits with a partition: two in D if all parts are even, else one."""
     h = sorted((k for d in partition for k in range(1 - d, d, 2)), reverse=True)
     h = h if letter == "A" else h[: len(h) // 2]
@@ -255,27 +244,22 @@ def _classical_diagrams(letter: str, partition: tuple[int, ...]) -> list[tuple[i
     return [diagram, (*diagram[:-2], diagram[-1], diagram[-2])] if two else [diagram]
 
 
-Parts = tuple[tuple[int, int], ...]
-"""A partition, as pairs (part, multiplicity) with decreasing parts."""
-
-
-def _partitions(n: int, colors: int) -> Iterator[Parts]:
+def _partitions(n: int, colors: int) -> Iterator[Ints]:
     """The partitions of n; the number of those with coloured parts must be within the limits."""
-    estimate = exp(min(pi * sqrt(2 * colors * n / 3), 100)) / (4 * max(n, 1))  # Hardy and Ramanujan
+    estimate = exp(min(pi * sqrt(2 * colors * n / 3), 100)) / (4 * n)  # Hardy and Ramanujan
     within("entries", int(estimate) * n, "the partitions have about {} parts")
 
-    def below(n: int, largest: int) -> Iterator[Parts]:
+    def below(n: int, largest: int) -> Iterator[Ints]:
         if n == 0:
             yield ()
         for d in range(min(n, largest), 0, -1):
-            for m in range(n // d, 0, -1):
-                yield from (((d, m), *rest) for rest in below(n - d * m, d - 1))
+            yield from ((d, *rest) for rest in below(n - d, d))
 
     return below(n, n)
 
 
 @lru_cache(maxsize=8)
-def _exceptional_diagrams(type_name: str) -> tuple[tuple[int, ...], ...]:
+def _exceptional_diagrams(type_name: str) -> tuple[Ints, ...]:
     """The weighted diagrams of an exceptional type, each with a triple that was found."""
     system, algebra = root_system(type_name), chevalley(type_name)
     rank, roots = system.rank, system.root_matrix()
@@ -283,28 +267,21 @@ def _exceptional_diagrams(type_name: str) -> tuple[tuple[int, ...], ...]:
     values = labels @ roots[: len(roots) // 2].T
     sizes = np.stack([(values == k).sum(axis=1) for k in range(values.max() + 3)], axis=1)
     sizes[:, 0] = 2 * sizes[:, 0] + rank
-    coweights = as_exact(QQ.matrix(system.cartan)).inverse()
+    coweights, rng = as_exact(QQ.matrix(system.cartan)).inverse(), np.random.default_rng(rank)
     diagrams = []
     for diagram in labels[(sizes[:, :-2] >= sizes[:, 2:]).all(axis=1)]:
-        h = coweights @ QQ.from_integers(diagram.tolist(), rank, 1)
-        if _has_triple(algebra, h.T, np.concatenate([np.zeros(rank, dtype=np.int64), roots @ diagram])):
-            diagrams.append(tuple(diagram.tolist()))
+        value = np.concatenate([np.zeros(rank, dtype=np.int64), roots @ diagram])
+        zero, minus = (np.flatnonzero(value == k).tolist() for k in (0, -2))
+        h = QQ.stack_rows([coweights @ QQ.matrix([diagram.tolist()]).T, QQ.zeros(len(zero) - rank, 1)], 1)
+        e = QQ.matrix([(rng.integers(1, LARGE, len(value)) * (value == 2)).tolist()])
+        try:
+            algebra.ad(e).select(rows=zero, columns=minus).solve(h)
+        except SingularError:
+            continue
+        diagrams.append(tuple(diagram.tolist()))
     if len(diagrams) != EXCEPTIONAL_ORBITS[type_name]:
         raise InternalError(f"{len(diagrams)} weighted diagrams of {type_name} were found, not all")
     return tuple(diagrams)
-
-
-def _has_triple(algebra: LieAlgebra, h: ExactMatrix, values: IntegerArray) -> bool:
-    """Whether [e, f] = h has a solution f in g_(-2) for a random e in g_2; h is in the Cartan subalgebra, a row."""
-    zero, two = np.flatnonzero(values == 0).tolist(), values == 2
-    weights = np.random.default_rng(len(values)).integers(1, LARGE, len(values)) * two
-    e = QQ.from_integers(weights.tolist(), 1, len(values))
-    brackets = algebra.ad(e).select(rows=zero, columns=np.flatnonzero(values == -2).tolist())
-    try:
-        brackets.solve(QQ.stack_rows([h.T, QQ.zeros(len(zero) - h.ncols, 1)], 1))
-    except SingularError:
-        return False
-    return True
 
 
 # Orbits of classical real forms (Collingwood and McGovern, 9.3).
@@ -341,33 +318,29 @@ def _real_orbits(form: RealForm) -> Iterator[NilpotentOrbit]:
             yield NilpotentOrbit((0,) * rank, 0)
             return
         raise CatalogError(
-            f"the nilpotent orbits of {form.name} are not known to the library, which lists those of classical real "
-            f"forms and of complex algebras: nilpotent_orbits({form.type!r})"
+            f"the nilpotent orbits of {form.name} are not known to the library; nilpotent_orbits({form.type!r}) lists "
+            "the complex ones"
         )
-    system, black = form.root_system(), form.satake.black
     for partition, rows, times in _real_diagrams(kind, numbers, letter):
         diagrams = _classical_diagrams("B" if kind == "so" and sum(numbers) == 3 else series, partition)
         # h is conjugate to an element of a split torus, on which black nodes of the Satake diagram vanish
-        diagrams = [diagram for diagram in diagrams if not any(diagram[i] for i in black)]
+        diagrams = [diagram for diagram in diagrams if not any(diagram[i] for i in form.satake.black)]
         for i in range(times):
-            diagram, numeral = diagrams[i * len(diagrams) // times], ("I", "II", "III", "IV")[i] if times > 1 else ""
-            yield NilpotentOrbit(diagram, dimension_of_orbit(system, diagram), partition, rows, numeral)
+            numeral = ("I", "II", "III", "IV")[i] if times > 1 else ""
+            yield _orbit(form.type, diagrams[i * len(diagrams) // times], partition, rows, numeral)
 
 
-def _real_diagrams(
-    kind: str, numbers: tuple[int, ...], letter: str
-) -> Iterator[tuple[tuple[int, ...], tuple[str, ...], int]]:
+def _real_diagrams(kind: str, numbers: Ints, letter: str) -> Iterator[tuple[Ints, Rows, int]]:
     """Partitions over the complex numbers, rows of signed diagrams, and the number of orbits that have them."""
     doubled = 2 if letter == "H" or kind == "so*" or (kind == "sp" and not letter) else 1
-    size = sum(numbers) // (2 if kind == "so*" else 1)
-    for parts in _partitions(size, 1 if kind == "sl" else 2):
-        partition = tuple(d for d, m in parts for _ in range(doubled * m))
+    for parts in _partitions(sum(numbers) // (2 if kind == "so*" else 1), 1 if kind == "sl" else 2):
+        partition = tuple(d for d in parts for _ in range(doubled))
         if kind == "sl":
             yield partition, (), 1 if letter == "H" or any(d % 2 for d in partition) else 2
             continue
-        signs = ROWS["sp R" if letter else kind]
-        for starts in product(*(STARTS[signs[d % 2 == 0]](m) for d, m in parts)):
-            rows = tuple(("+-" * d)[i >= a :][:d] for (d, m), a in zip(parts, starts, strict=True) for i in range(m))
+        signs, lengths = ROWS["sp R" if letter else kind], Counter(parts).items()
+        for starts in product(*(STARTS[signs[d % 2 == 0]](m) for d, m in lengths)):
+            rows = tuple(("+-" * d)[i >= a :][:d] for (d, m), a in zip(lengths, starts, strict=True) for i in range(m))
             plus = [row.count("+") for row in rows]
             if kind == "so*" or letter or sum(plus) == numbers[0]:
                 turned = {count % 2 for count, row in zip(plus, rows, strict=True) if len(row) % 2}
