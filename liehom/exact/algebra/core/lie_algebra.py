@@ -905,9 +905,9 @@ class LieAlgebra(Displayed, Immutable):
         from liehom.exact.algebra.structure.nilpotent import nilpotent_orbits
 
         forms = self.real_forms()
-        if len(forms) != 1 or forms[0].dimension != self.dimension:
+        if len(forms) > 1 or sum(form.dimension for form in forms) != self.dimension:
             raise InputError(f"nilpotent orbits are listed for simple algebras, and {self!r} is not simple")
-        return nilpotent_orbits(forms[0].name)
+        return nilpotent_orbits(forms[0].name if forms else "0")
 
     # -- Cartan subalgebras and roots --------------------------------------------------------------------
     def cartan_subalgebra(self) -> Subalgebra:

@@ -56,8 +56,8 @@ def jordan_decomposition(algebra: LieAlgebra, x: ElementLike) -> tuple[ExactMatr
     n = _element_acting_by(algebra, space, action - semisimple)
     if n is None:
         raise InputError(
-            f"{algebra.show(x)} has no Jordan decomposition in {algebra!r}: the semisimple part of ad x is a "
-            "derivation that is not inner, which does not happen in a reductive algebra"
+            f"{algebra.show(x)} has no Jordan decomposition in {algebra!r}, which is not reductive: the semisimple "
+            "part of ad x is a derivation that is not inner"
         )
     return row - n, n
 
@@ -144,7 +144,6 @@ def _small_semisimple(algebra: LieAlgebra, e: ExactMatrix, action: ExactMatrix) 
 
 Ints = tuple[int, ...]
 Rows = tuple[str, ...]
-
 EXCEPTIONAL_ORBITS = {"G2": 5, "F4": 16, "E6": 21, "E7": 45, "E8": 70}
 
 
@@ -161,7 +160,8 @@ class NilpotentOrbit:
     dimension : int
         The dimension, over the complex numbers for a complex type, else over the reals.
     partition : tuple of int
-        For classical algebras the sizes of Jordan blocks in the defining module or its complexification, else empty.
+        The sizes of Jordan blocks in the defining module or its complexification; empty for exceptional and compact
+        algebras.
     rows : tuple of str
         The rows of the signed Young diagram, such as ``('+-+', '-')``, for real forms that preserve a form, else empty.
     numeral : str
@@ -208,9 +208,9 @@ def nilpotent_orbits(name: str) -> list[NilpotentOrbit]:
         orbits = _real_orbits(RealForm.of_name(name))
     else:
         parts = parse_type(name)
-        if len(parts) != 1 or parts[0] == ("D", 2):
+        if len(parts) > 1 or ("D", 2) in parts:
             raise CatalogError(f"{name!r} is not the type of a simple Lie algebra, such as A1, B2, C3, D4, E8, F4, G2")
-        orbits = _complex_orbits(*parts[0])
+        orbits = _complex_orbits(*parts[0]) if parts else iter([NilpotentOrbit((), 0)])
     return sorted(orbits, key=attrgetter("dimension", "diagram"))
 
 
@@ -313,18 +313,18 @@ def _real_orbits(form: RealForm) -> Iterator[NilpotentOrbit]:
     if letter == "C":
         yield from (replace(orbit, dimension=2 * orbit.dimension) for orbit in _complex_orbits(series, rank))
         return
-    if kind in EXCEPTIONAL_CHARACTERS:
-        if form.is_compact:
-            yield NilpotentOrbit((0,) * rank, 0)
-            return
+    if kind in EXCEPTIONAL_CHARACTERS and not form.is_compact:
         raise CatalogError(
             f"the nilpotent orbits of {form.name} are not known to the library; nilpotent_orbits({form.type!r}) lists "
             "the complex ones"
         )
+    if form.is_compact:
+        yield NilpotentOrbit((0,) * rank, 0)
+        return
+    black = form.satake.black
     for partition, rows, times in _real_diagrams(kind, numbers, letter):
-        diagrams = _classical_diagrams("B" if kind == "so" and sum(numbers) == 3 else series, partition)
         # h is conjugate to an element of a split torus, on which black nodes of the Satake diagram vanish
-        diagrams = [diagram for diagram in diagrams if not any(diagram[i] for i in form.satake.black)]
+        diagrams = [d for d in _classical_diagrams(series, partition) if not any(d[i] for i in black)]
         for i in range(times):
             numeral = ("I", "II", "III", "IV")[i] if times > 1 else ""
             yield _orbit(form.type, diagrams[i * len(diagrams) // times], partition, rows, numeral)

@@ -215,7 +215,8 @@ def test_complex_orbits_with_real_points_are_those_that_match_the_satake_diagram
 def test_an_algebra_lists_the_orbits_of_its_real_form() -> None:
     assert scrambled(lh.so(1, 3), 1).nilpotent_orbits() == orbits("sl(2,C)")
     assert lh.chevalley("B2").nilpotent_orbits() == orbits("so(3,2)")
-    for g in (lh.so(4), lh.euclidean(3), lh.gl(2)):
+    assert [x.dimension for x in lh.abelian(0).nilpotent_orbits()] == [0]
+    for g in (lh.so(4), lh.euclidean(3), lh.gl(2), lh.abelian(1)):
         with pytest.raises(InputError, match="is not simple"):
             g.nilpotent_orbits()
 
