@@ -53,28 +53,22 @@ def jordan_decomposition(algebra: LieAlgebra, x: ElementLike) -> tuple[ExactMatr
     f, semisimple = f // f.gcd(f.derivative()), action
     while not (value := evaluate(f, semisimple)).is_zero():
         semisimple = semisimple - evaluate(f.derivative(), semisimple).solve(value)
-    n = _element_acting_by(algebra, space, action - semisimple)
-    if n is None:
+    size, rng = algebra.dimension, np.random.default_rng(algebra.dimension)
+    tests, images = field.zeros(0, size), field.zeros(space.nrows, 0)
+    while images.rank() < space.nrows:
+        y = field.from_integers(rng.integers(-LARGE, LARGE, size).tolist(), 1, size)
+        tests = field.stack_rows([tests, y], size)
+        images = field.stack_columns([images, -(space @ algebra.ad(y).T)], space.nrows)
+    try:
+        n = images.T.solve((tests @ (action - semisimple).T).reshape(tests.nrows * size, 1)).T @ space
+    except SingularError:
+        n = field.zeros(1, size)
+    if algebra.ad(n) != action - semisimple:
         raise InputError(
             f"{algebra.show(x)} has no Jordan decomposition in {algebra!r}, which is not reductive: the semisimple "
             "part of ad x is a derivation that is not inner"
         )
     return row - n, n
-
-
-def _element_acting_by(algebra: LieAlgebra, space: ExactMatrix, action: ExactMatrix) -> ExactMatrix | None:
-    """The row (1, n) in the span of `space`, which meets the centre in 0, that acts by a matrix on columns, or None."""
-    field, n, rng = space.field, algebra.dimension, np.random.default_rng(algebra.dimension)
-    tests, images = field.zeros(0, n), field.zeros(space.nrows, 0)
-    while images.rank() < space.nrows:
-        y = field.from_integers(rng.integers(-LARGE, LARGE, n).tolist(), 1, n)
-        tests = field.stack_rows([tests, y], n)
-        images = field.stack_columns([images, -(space @ algebra.ad(y).T)], space.nrows)
-    try:
-        x = images.T.solve((tests @ action.T).reshape(tests.nrows * n, 1)).T @ space
-    except SingularError:
-        return None
-    return x if algebra.ad(x) == action else None
 
 
 # sl2-triples.  For nilpotent e in a semisimple algebra, every h in [e, g] with [h, e] = 2 e belongs to a triple
@@ -240,8 +234,8 @@ def _classical_diagrams(letter: str, partition: Ints) -> list[Ints]:
     inner = [a - b for a, b in pairwise(h)]
     last = {"A": [], "B": h[-1:], "C": [2 * h[-1]], "D": [sum(h[-2:])]}[letter]
     diagram = (*inner, *last)
-    two = letter == "D" and all(d % 2 == 0 for d in partition)
-    return [diagram, (*diagram[:-2], diagram[-1], diagram[-2])] if two else [diagram]
+    is_very_even = letter == "D" and all(d % 2 == 0 for d in partition)
+    return [diagram, (*diagram[:-2], diagram[-1], diagram[-2])] if is_very_even else [diagram]
 
 
 def _partitions(n: int, colors: int) -> Iterator[Ints]:
@@ -297,12 +291,8 @@ def _exceptional_diagrams(type_name: str) -> tuple[Ints, ...]:
 ROWS = {"su": ("signed", "signed"), "sp": ("signed", "plus"), "so*": ("plus", "signed"), "so": ("signed", "pairs")}
 ROWS |= {"sp R": ("balanced", "signed")}
 """For each kind of algebra with a form, which signs the rows of odd and those of even length have."""
-STARTS: dict[str, Callable[[int], range]] = {
-    "signed": lambda m: range(m, -1, -1),
-    "plus": lambda m: range(m, m + 1),
-    "balanced": lambda m: range(m // 2, m // 2 + 1 - m % 2),
-    "pairs": lambda m: range(m, m + 1 - m % 2),
-}
+STARTS: dict[str, Callable[[int], range]] = {"signed": lambda m: range(m, -1, -1), "plus": lambda m: range(m, m + 1)}
+STARTS |= {"balanced": lambda m: range(m // 2, m // 2 + 1 - m % 2), "pairs": lambda m: range(m, m + 1 - m % 2)}
 """How many of m rows with the same length begin with +."""
 
 
