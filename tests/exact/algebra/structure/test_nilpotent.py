@@ -108,7 +108,8 @@ def test_elements_without_a_triple_raise_with_the_reason() -> None:
 
 
 # -- complex orbits --------------------------------------------------------------------------------------------------
-# numbers with the zero orbit: partitions (OEIS A000041) for A; Collingwood and McGovern, chapter 5 and 8.4, for others
+# Numbers with the zero orbit. In type A they are numbers of partitions, in exceptional types those of Collingwood and
+# McGovern, 8.4.
 NUMBERS = {"A1": 2, "A2": 3, "A4": 7, "A7": 22, "G2": 5, "F4": 16, "E6": 21, "E7": 45, "E8": 70}
 
 
