@@ -35,7 +35,8 @@ ORDER: dict[str, list[str]] = {
         "liehom.exact.algebra.linear": "complex_matrices generated_span closure linear_bases named_matrices",
         "liehom.exact.algebra.roots": "root_system diagrams chevalley real_form real_form_involutions",
         "liehom.exact.algebra.structure": (
-            "centroid casimirs cohomology derivations ideals levi root_spaces isomorphisms naming identification"
+            "centroid nilpotent casimirs cohomology derivations ideals levi root_spaces isomorphisms naming "
+            "identification"
         ),
         "liehom.exact.catalog": "names algebras pairs",
         "liehom.exact.fullness": (

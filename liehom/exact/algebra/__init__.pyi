@@ -77,6 +77,10 @@ from liehom.exact.algebra.structure.derivations import Derivations as Derivation
 from liehom.exact.algebra.structure.ideals import Place as Place
 from liehom.exact.algebra.structure.levi import LeviDecomposition as LeviDecomposition
 from liehom.exact.algebra.structure.naming import Identification as Identification
+from liehom.exact.algebra.structure.nilpotent import (
+    NilpotentOrbit as NilpotentOrbit,
+    nilpotent_orbits as nilpotent_orbits,
+)
 from liehom.exact.algebra.structure.root_spaces import (
     RootSpace as RootSpace,
     RootSpaceDecomposition as RootSpaceDecomposition,

@@ -48,6 +48,7 @@ if TYPE_CHECKING:
     from liehom.exact.algebra.structure.derivations import Derivations
     from liehom.exact.algebra.structure.levi import LeviDecomposition
     from liehom.exact.algebra.structure.naming import Identification
+    from liehom.exact.algebra.structure.nilpotent import NilpotentOrbit
     from liehom.exact.algebra.structure.root_spaces import RootSpaceDecomposition
 
 M = TypeVar("M", bound=Matrix)
@@ -851,6 +852,62 @@ class LieAlgebra(Displayed, Immutable):
         from liehom.exact.algebra.structure.casimirs import casimirs
 
         return casimirs(self, max_degree)
+
+    # -- Jordan decomposition and nilpotent elements -----------------------------------------------------
+    def jordan_decomposition(self, x: ElementLike) -> tuple[npt.NDArray[Any], npt.NDArray[Any]]:
+        """The Jordan decomposition (s, n) of an element, two arrays (dimension,) with x = s + n and [s, n] = 0.
+
+        ad s is semisimple, and ad n is nilpotent (Humphreys, Introduction to Lie Algebras, 5.4). In a reductive
+        algebra s and n exist, and they are unique with n in [g, g]. In other algebras an `InputError` is raised if they
+        do not exist, or if there is a centre, up to which they are not unique.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> g = lh.gl(2)
+        >>> [g.show(y) for y in g.jordan_decomposition([3, 1, 0, 3])]
+        ['3*e0 + 3*e3', 'e1']
+        """
+        from liehom.exact.algebra.structure.nilpotent import jordan_decomposition
+
+        s, n = jordan_decomposition(self, x)
+        return self._vector(s.row(0)), self._vector(n.row(0))
+
+    def sl2_triple(self, e: ElementLike) -> tuple[npt.NDArray[Any], npt.NDArray[Any], npt.NDArray[Any]]:
+        """An sl2-triple (h, e, f) through an element, arrays with [h, e] = 2 e, [h, f] = -2 f and [e, f] = h.
+
+        In a semisimple algebra each nilpotent e other than 0 belongs to one, by the theorem of Jacobson and Morozov
+        (Collingwood and McGovern, Nilpotent Orbits in Semisimple Lie Algebras, 3.3). Other algebras are searched, too.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> g = lh.chevalley("A2")
+        >>> [g.show(y) for y in g.sl2_triple({"e1": 1, "e2": 1})]
+        ['2*h1 + 2*h2', 'e1 + e2', '2*f1 + 2*f2']
+        """
+        from liehom.exact.algebra.structure.nilpotent import sl2_triple
+
+        triple = sl2_triple(self, e)
+        return self._vector(triple.h.row(0)), self._vector(triple.e.row(0)), self._vector(triple.f.row(0))
+
+    def nilpotent_orbits(self) -> list[NilpotentOrbit]:
+        """The nilpotent orbits of a simple algebra under its adjoint group, the zero orbit first, by dimension.
+
+        They are those of `liehom.algebra.nilpotent_orbits` for the name of the real form.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> [(orbit.rows, orbit.dimension) for orbit in lh.su(2, 1).nilpotent_orbits()]
+        [(('+', '+', '-'), 0), (('+-', '+'), 4), (('-+', '+'), 4), (('+-+',), 6)]
+        """
+        from liehom.exact.algebra.structure.nilpotent import nilpotent_orbits
+
+        forms = self.real_forms()
+        if len(forms) > 1 or sum(form.dimension for form in forms) != self.dimension:
+            raise InputError(f"nilpotent orbits are listed for simple algebras, and {self!r} is not simple")
+        return nilpotent_orbits(forms[0].name if forms else "0")
 
     # -- Cartan subalgebras and roots --------------------------------------------------------------------
     def cartan_subalgebra(self) -> Subalgebra:

@@ -27,11 +27,11 @@ from liehom.exact.algebra.involutions.rational_involution import (
     eigenspace,
     involution_of_triple,
     lattice_order,
-    sl2_triple,
 )
 from liehom.exact.algebra.structure.centroid import evaluate, exact_field
 from liehom.exact.algebra.structure.ideals import CentroidField, direct_sum_decomposition, field_places, over_extension
 from liehom.exact.algebra.structure.identification import real_form
+from liehom.exact.algebra.structure.nilpotent import triple_through
 from liehom.exact.algebra.structure.root_spaces import cartan_subalgebra
 from liehom.exact.scalars.exact_field import ExactMatrix, as_exact
 from liehom.exact.scalars.extension import Extension, adjoin_root, real_roots, trivial_extension
@@ -439,7 +439,7 @@ def _of_parabolic(algebra: LieAlgebra, x: ExactMatrix, values: list[Scalar]) -> 
     weights = np.random.default_rng(n).integers(1, 4, nilradical.nrows).tolist()
     e = field.from_integers(weights, 1, nilradical.nrows) @ nilradical
     try:
-        return involution_of_triple(algebra, sl2_triple(algebra, e))
+        return involution_of_triple(algebra, triple_through(algebra, e))
     except (np.linalg.LinAlgError, SingularError):
         return None
 

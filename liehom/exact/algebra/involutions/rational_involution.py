@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from fractions import Fraction
-from typing import NamedTuple, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from liehom.exact.algebra.involutions.cartan_involution import (
     perturbed,
 )
 from liehom.exact.algebra.structure.centroid import exact_field, flat_rows
+from liehom.exact.algebra.structure.nilpotent import SL2Triple, triple_through
 from liehom.exact.algebra.structure.root_spaces import cartan_subalgebra
 from liehom.exact.scalars.exact_field import ExactMatrix, as_exact
 from liehom.exact.scalars.field import Scalar
@@ -226,8 +227,7 @@ def _flattened(space: Rows, d: int, n: int) -> list[int]:
 
 # Nilpotent elements of a semisimple algebra over QQ among short vectors of a lattice, and their sl2-triples.
 # A lattice that is closed under brackets and reduced for -K(x, theta y) contains many short nilpotent elements, if the
-# algebra has any with rational coefficients.  For nilpotent e, every h in [e, g] with [h, e] = 2 e belongs to a triple
-# [h, e] = 2 e, [h, f] = -2 f, [e, f] = h (Jacobson, Morozov), and f is unique.  A triple leads to more generic
+# algebra has any with rational coefficients.  A triple [h, e] = 2 e, [h, f] = -2 f, [e, f] = h leads to more generic
 # nilpotent elements: z(h) is a Levi factor of the parabolic subalgebra of the eigenvalues >= 0 of ad h, and a nilpotent
 # element of z(h) plus a random sum of eigenvectors with eigenvalues > 0 is nilpotent.  The iteration ends when [z(h),
 # z(h)] is compact, because then the parabolic subalgebra is minimal, and all eigenvalues of ad h are even, because then
@@ -238,40 +238,6 @@ GENERIC_STEPS = 12  # iterations to a generic element
 ISOTROPIC = 1e-8  # |K(x, x)| relative to -K(x, theta x) up to which x is tested for being nilpotent
 RANK = 1e-6  # singular values below this count as 0
 PRIME = 33_554_393  # below 2^25; nilpotency is tested modulo this prime
-
-
-class SL2Triple(NamedTuple):
-    """Elements of an algebra with [h, e] = 2 e, [h, f] = -2 f, [e, f] = h, as rows (1, n)."""
-
-    e: ExactMatrix
-    h: ExactMatrix
-    f: ExactMatrix
-
-
-def sl2_triple(algebra: LieAlgebra, e: ExactMatrix) -> SL2Triple:
-    """The triple through a nilpotent element (1, n) of a semisimple algebra."""
-    field, n = e.field, algebra.dimension
-    if e.is_zero():
-        raise SingularError("there is no sl2-triple through 0; give a nilpotent element that is not 0")
-    action = algebra.ad(e).T  # on rows: y @ action = [e, y]
-    h = _small_semisimple(algebra, e, action)
-    inner = algebra.ad(h).T + field.identity(n).scale(field.convert(2))
-    joined = field.stack_columns([action, inner], n)
-    f = joined.T.solve(field.stack_columns([h, field.zeros(1, n)], 1).T).T
-    return SL2Triple(e, h, f)
-
-
-def _small_semisimple(algebra: LieAlgebra, e: ExactMatrix, action: ExactMatrix) -> ExactMatrix:
-    """An h in [e, g] with [h, e] = 2 e, with small numbers: w / s for a short integer w with [w, e] = 2 s e."""
-    field, n = e.field, algebra.dimension
-    z = (action @ action).T.solve(e.T.scale(-field.convert(2))).T
-    # x action lies in [e, g], and commutes with e if x action^2 = 0
-    commuting = (action @ action).T.null_space() @ action
-    pivot = next(i for i, x in enumerate(e.to_rows()[0]) if x != 0)
-    rows = integral_basis(field.stack_rows([z @ action, commuting], n))
-    values = [-x / (2 * e[0, pivot]) for x in (rows @ action).T.to_rows()[pivot]]
-    _, i = min((abs(s), i) for i, s in enumerate(values) if s != 0)
-    return rows.select(rows=[i]).scale(1 / values[i])
 
 
 def generic_nilpotent(algebra: LieAlgebra, theta: Array) -> SL2Triple | None:
@@ -285,7 +251,7 @@ def generic_nilpotent(algebra: LieAlgebra, theta: Array) -> SL2Triple | None:
     if e is None:
         return None
     for _ in range(GENERIC_STEPS):
-        triple = sl2_triple(algebra, e)
+        triple = triple_through(algebra, e)
         levi = algebra.centralizer(triple.h)
         compact, inside = _nilpotent_inside(levi)
         if compact and all(k % 2 == 0 for k in positive_eigenvalues(algebra, triple.h)):

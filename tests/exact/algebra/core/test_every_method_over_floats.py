@@ -100,6 +100,9 @@ OF_EXACT_FIELDS = (
 REFUSED: dict[str, Question] = {
     "casimirs": lambda g: g.casimirs(2),
     **{name: methodcaller(name, lh.so(3)) for name in ("differing_invariant", "is_isomorphic", "isomorphism")},
+    "jordan_decomposition": lambda g: g.jordan_decomposition([1] * g.dimension),
+    "nilpotent_orbits": methodcaller("nilpotent_orbits"),
+    "sl2_triple": lambda g: lh.sl(2).over(g.field).sl2_triple([1, 0, 0]),
     "identify": lambda g: lh.low_dimensional(3, 6).over(g.field).identify(),
     "parabolic_subalgebra": lambda g: g.parabolic_subalgebra([0]),
     **{name: methodcaller(name) for name in OF_EXACT_FIELDS},

@@ -13,8 +13,8 @@ from liehom.exact.algebra.involutions.rational_involution import (
     generic_nilpotent,
     isotropic_involution,
     lattice_order,
-    sl2_triple,
 )
+from liehom.exact.algebra.structure.nilpotent import triple_through
 from liehom.testing import random_unimodular
 
 SPLIT = ("sl(2,R)", "sl(4,R)", "so(3,2)", "sp(6,R)", "g2(2)")
@@ -55,7 +55,7 @@ def test_sl2_triple_of_a_non_nilpotent_element_raises() -> None:
     g = lh.sl(2)
     for row in ([[0, 0, 1]], [[1, -1, 0]], [[0, 0, 0]]):
         with pytest.raises(SingularError):
-            sl2_triple(g, g.field.matrix(row))
+            triple_through(g, g.field.matrix(row))
 
 
 @pytest.mark.parametrize(("name", "seed"), [("g2(2)", 6), ("sp(6,R)", 1)])
