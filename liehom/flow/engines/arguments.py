@@ -15,6 +15,7 @@ from liehom.base.errors import InputError, LiehomError, ShapeError, displayed
 from liehom.base.objects import refuse_masked
 from liehom.base.pytrees import Leaf, PerTrajectory, leaves, mapped, unwrapped
 from liehom.base.typing import Array, IntegerArray, Pytree, Values
+from liehom.flow.action.components import check_trajectories
 from liehom.flow.action.field import GeneratorField, check_point
 from liehom.flow.action.quadrics import tight_frame
 from liehom.flow.action.space import Action
@@ -113,17 +114,21 @@ def without_jax(args: Pytree) -> Pytree:
     return mapped(args, plain)
 
 
-def check_generator(field: GeneratorField, start: Array, t: np.floating[Any]) -> None:
+def check_generator(field: GeneratorField, start: Array, span: Span) -> None:
     """Raise InputError unless psi is real and finite at the initial points (`field.psi` checks its shape)."""
+    t = span[0]
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
         psi = np.asarray(field.psi(start, np.full(start.shape[:-1], t)))
     if psi.dtype.kind not in "iuf":
         raise InputError(f"psi has the type {psi.dtype} at the start, expected real numbers")
-    bad = ~np.isfinite(psi).all(axis=-1)
-    if bool(bad.any()):
-        index = tuple(int(i) for i in np.argwhere(bad)[0])
+    bad = np.argwhere(~np.isfinite(psi).all(axis=-1))
+    if len(bad):
+        index = tuple(map(int, bad[0]))
         where = f" of trajectory {index}" if index else ""
         raise InputError(f"psi is {psi[index]} at the start{where}, t = {t}, m = {start[index]}: it must be finite")
+    if start.shape[-2:-1] in {psi.shape[-1:], start.shape[-1:]}:  # then m[0], or np.sin(t) * c, raises no other error
+        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+            check_trajectories(field.psi, "psi", start, t, t + (span[1] - t) / 64, psi)
 
 
 def step_sizes(dt: npt.ArrayLike, start: Values, span: Span) -> Array:
