@@ -286,7 +286,19 @@ class Components:
                     f"{self.what}[{index[-1]}] is {components[index]} at m = {np.asarray(point)[index[:-1]]}, t = "
                     f"{time}{of_trajectory(index[:-1])}: start where it is defined, or change the field"
                 )
-            check_trajectories(self, self.what, np.asarray(point), t, t, components)
+            self._check_trajectories(np.asarray(point), t, components)
+
+    def _check_trajectories(self, m: Array, t: Real, components: Array) -> None:
+        """Check that the values of one trajectory stay the same if all others are moved to its point."""
+        if m.ndim == 1 or m.size == 0:
+            return
+        for index in {(0,) * (m.ndim - 1), tuple(n - 1 for n in m.shape[:-1])}:
+            alike, own = np.asarray(self(np.broadcast_to(m[index], m.shape).copy(), t))[index], components[index]
+            if not np.allclose(alike, own, rtol=1e-6, atol=1e-6 * float(np.abs(own).max(initial=0.0))):
+                raise ShapeError(
+                    f"{self.what} of trajectory {index} depends on the points of other trajectories: coordinates are "
+                    "on the last axis of m (write m[..., 0], and np.stack(..., axis=-1))"
+                )
 
     def _checked(self, components: object, m: Values) -> Values:
         values = joined(components, m)
@@ -402,21 +414,6 @@ def _stacked(parts: list[Value], m: Values) -> Values:
     for i, part in enumerate(parts):
         out[..., i] = part
     return out
-
-
-def check_trajectories(psi: Callable[[Array, Real], Any], what: str, m: Array, t: Real, later: Real, x: Array) -> None:
-    """Check that x = psi(m, t) of one trajectory stays if all others are moved to its point, and to a later time."""
-    if m.ndim == 1 or m.size == 0:
-        return
-    for index in {(0,) * (m.ndim - 1), tuple(n - 1 for n in m.shape[:-1])}:
-        times = np.full(m.shape[:-1], later)
-        times[index] = np.broadcast_to(t, times.shape)[index]
-        alike, own = np.asarray(psi(np.broadcast_to(m[index], m.shape).copy(), times))[index], x[index]
-        if not np.allclose(alike, own, rtol=1e-6, atol=1e-6 * float(np.abs(own).max(initial=0.0))):
-            raise ShapeError(
-                f"{what} of trajectory {index} depends on the points of other trajectories, or on their times: "
-                "coordinates are on the last axis of m (write m[..., 0], np.sin(t)[..., None], np.stack(..., axis=-1))"
-            )
 
 
 def of_trajectory(index: tuple[int, ...]) -> str:

@@ -15,7 +15,6 @@ from liehom.base.errors import InputError, LiehomError, ShapeError, displayed
 from liehom.base.objects import refuse_masked
 from liehom.base.pytrees import Leaf, PerTrajectory, leaves, mapped, unwrapped
 from liehom.base.typing import Array, IntegerArray, Pytree, Values
-from liehom.flow.action.components import check_trajectories
 from liehom.flow.action.field import GeneratorField, check_point
 from liehom.flow.action.quadrics import tight_frame
 from liehom.flow.action.space import Action
@@ -126,9 +125,11 @@ def check_generator(field: GeneratorField, start: Array, span: Span) -> None:
         index = tuple(map(int, bad[0]))
         where = f" of trajectory {index}" if index else ""
         raise InputError(f"psi is {psi[index]} at the start{where}, t = {t}, m = {start[index]}: it must be finite")
-    if start.shape[-2:-1] in {psi.shape[-1:], start.shape[-1:]}:  # then m[0], or np.sin(t) * c, raises no other error
-        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-            check_trajectories(field.psi, "psi", start, t, t + (span[1] - t) / 64, psi)
+    if field.time_dependent and start.shape[-2:-1] == psi.shape[-1:]:  # then np.sin(t) * c raises no other error
+        times = np.full(start.shape[:-1], t + (span[1] - t) / 64)
+        times[..., 0] = t
+        if not np.allclose(np.asarray(field.psi(start, times))[..., 0, :], psi[..., 0, :], rtol=1e-6, equal_nan=True):
+            raise ShapeError("psi of a trajectory depends on the times of other ones: write np.sin(t)[..., None] * m")
 
 
 def step_sizes(dt: npt.ArrayLike, start: Values, span: Span) -> Array:

@@ -389,28 +389,6 @@ def test_check_finds_mixed_trajectories(function: Any) -> None:
         components(function).check(start)
 
 
-@pytest.mark.parametrize("engine", ["auto", "numpy"])
-@pytest.mark.parametrize(
-    "psi",
-    [
-        lambda m: np.stack([m[1], m[0], m[2]]),
-        lambda m, t: -m + np.sin(3 * t) * np.array([0.3, 0.0, 0.1]),
-        lambda m, t: np.stack([m[..., 0], m[..., 1], m[..., 2] * t[0]], axis=-1),
-    ],
-    ids=["points", "times", "one time"],
-)
-def test_as_many_trajectories_as_components_are_not_mixed_silently(psi: Any, engine: Any) -> None:
-    """All initial times are equal, so that only another time shows which trajectory a component belongs to."""
-    field = lh.GeneratorField(lh.adjoint(lh.so(3)), psi)
-    with pytest.raises(ShapeError, match=r"other trajectories, or on their times.*np.sin\(t\)"):
-        lh.integrate(field, (0, 2), np.eye(3), engine=engine)
-
-
-def test_as_many_trajectories_as_components_with_their_own_parameters_are_accepted() -> None:
-    field = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m, t: -m * np.array([[1], [2], [3]]) + np.sin(t)[..., None])
-    assert lh.integrate(field, (0, 1), np.eye(3)[::-1]).success
-
-
 def test_check_of_the_point() -> None:
     for bad in (np.zeros(2), np.zeros((3, 4)), np.float64(1.0)):
         with pytest.raises(ShapeError, match="3 coordinates"):
