@@ -163,9 +163,7 @@ def shapes_named(args: Pytree) -> Iterator[None]:
 OF_SOLVE_IVP = {  # options of scipy's solve_ivp, and what there is in their place
     "method": "the method is step, such as step='rk45' or step=liehom.LieTaylor(6)",
     "vectorized": "psi is called on whole ensembles always: m of shape (..., N), t of shape (...,)",
-    **dict.fromkeys(
-        ("jac", "jac_sparsity", "lband", "uband"), "derivatives of psi are computed, by series or by tracing"
-    ),
+    **dict.fromkeys(("jac", "jac_sparsity", "lband", "uband"), "derivatives of psi are computed by series or tracing"),
 }
 OF_PROPAGATOR = ("step", "exponential", "clock", "engine")  # what a propagator has, and its calls do not take
 OPTIONS = tuple({**EnsembleOptions.__annotations__, **FileOptions.__annotations__})
