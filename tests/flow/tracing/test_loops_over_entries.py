@@ -10,7 +10,6 @@ import pytest
 
 import liehom as lh
 from liehom.flow.engines import jax_kernel, llvm_engine
-from liehom.flow.engines.plan import call_of
 from liehom.flow.engines.traced_step import traced_step
 from liehom.flow.tracing.array import Traced, contracted
 from liehom.flow.tracing.graph import LongGraphError, Table, Tape, needed
@@ -65,10 +64,9 @@ def test_calls_on_spheres_are_made_again_by_a_plan(monkeypatch: pytest.MonkeyPat
     engine: Any = propagator.engine
     first = propagator((0.0, 1.0), _points(1)[0], dt=0.1)
     assert len(engine._plans) == 1
-    (plan,) = engine._plans.values()
-    again = plan(call_of((0.0, 1.0), _points(1)[0], {"dt": 0.1}))
+    again = engine.again((0.0, 1.0), _points(1)[0], {"dt": 0.1})
     assert np.array_equal(again.y, first.y)
-    assert all(plan(call_of((0.0, 1.0), x * _points(1)[0], {"dt": 0.1})) is None for x in (0.0, np.nan, np.inf))
+    assert all(engine.again((0.0, 1.0), x * _points(1)[0], {"dt": 0.1}) is None for x in (0.0, np.nan, np.inf))
 
 
 @pytest.mark.parametrize("name", ["elementary functions", "einsum"])
