@@ -7,11 +7,13 @@ import importlib
 import inspect
 import io
 import json
+import logging
 import re
 import shlex
 import subprocess
 import sys
 import textwrap
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +24,14 @@ DOCS = ROOT / "docs"
 PACKAGE = Path(str(importlib.import_module("liehom").__file__)).parent
 MAPPED = ("paper-map.md", "notation.md")
 BUILTIN = {"ArithmeticError", "AttributeError", "TypeError", "ValueError"}
+
+
+@pytest.fixture(autouse=True)
+def quiet_loggers() -> Iterator[None]:
+    """Pages switch the log on. Tests behind them run without it, since a message calls the code that formats it."""
+    yield
+    for name in ("liehom", *(name for name in logging.root.manager.loggerDict if name.startswith("liehom."))):
+        logging.getLogger(name).setLevel(logging.NOTSET)
 
 
 def read(*parts: str) -> str:
@@ -167,6 +177,10 @@ def test_python_on_the_page_runs_and_gives_what_it_says(
     found = re.findall(printing, read(page), flags=re.MULTILINE | re.DOTALL)
     compared = sum(run_block(block, namespace, shown) for block, shown in found)
     assert compared >= {"README.md": 2, "docs/getting-started.md": 2}.get(page, 0)
+
+
+def test_a_page_leaves_the_log_switched_off() -> None:
+    assert not logging.getLogger("liehom.exact.fullness").isEnabledFor(logging.DEBUG)
 
 
 @pytest.mark.parametrize("page", pages_with("pycon"))

@@ -113,30 +113,33 @@ def without_jax(args: Pytree) -> Pytree:
     return mapped(args, plain)
 
 
-def check_generator(field: GeneratorField, start: Array, t: np.floating[Any]) -> None:
-    """Raise InputError unless psi is real and finite at the initial points (`field.psi` checks its shape)."""
-    with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-        psi = np.asarray(field.psi(start, np.full(start.shape[:-1], t)))
+@np.errstate(over="ignore", invalid="ignore", divide="ignore")
+def check_generator(field: GeneratorField, start: Array, span: Span) -> None:
+    """Raise an error unless psi is real and finite at the initial points, and reads of each trajectory its own time."""
+    times = np.full(start.shape[:-1], span[0])
+    psi = np.asarray(field.psi(start, times))
     if psi.dtype.kind not in "iuf":
         raise InputError(f"psi has the type {psi.dtype} at the start, expected real numbers")
-    bad = ~np.isfinite(psi).all(axis=-1)
-    if bool(bad.any()):
-        index = tuple(int(i) for i in np.argwhere(bad)[0])
+    for index in map(tuple, np.argwhere(~np.isfinite(psi).all(axis=-1)).tolist()):
         where = f" of trajectory {index}" if index else ""
-        raise InputError(f"psi is {psi[index]} at the start{where}, t = {t}, m = {start[index]}: it must be finite")
+        raise InputError(f"psi is {psi[index]} at the start{where}, t = {span[0]}, m = {start[index]}: not finite")
+    if field.time_dependent and start.shape[-2:-1] in {psi.shape[-1:], start.shape[-1:]}:
+        times[..., 1:] += (span[1] - span[0]) / 64  # np.sin(t) * c raises no error for as many trajectories
+        first, noise = np.asarray(field.psi(start, times))[..., 0, :], 1e-9 * np.abs(psi).max(initial=0.0)
+        if not np.allclose(first, psi[..., 0, :], rtol=1e-6, atol=noise, equal_nan=True):
+            raise ShapeError("psi of a trajectory depends on the times of other ones: write np.sin(t)[..., None] * m")
 
 
 def step_sizes(dt: npt.ArrayLike, start: Values, span: Span) -> Array:
     """Fixed step sizes of shape (...,), checked."""
     refuse_masked("dt", dt)
-    kind = start.dtype
     try:
-        sizes = np.asarray(dt).astype(kind, casting="same_kind")
+        sizes = np.asarray(dt).astype(start.dtype, casting="same_kind")
     except (TypeError, ValueError):
         raise InputError(f"dt is {displayed(dt)}, expected a positive step size") from None
     if not bool(np.all(np.isfinite(sizes) & (sizes > 0))):
         raise InputError(f"dt is {displayed(dt)}, expected a positive step size (the direction is that of t_span)")
-    least = 8 * np.finfo(kind).eps * max(abs(span[0]), abs(span[1]))
+    least = 8 * np.finfo(start.dtype).eps * max(abs(span[0]), abs(span[1]))
     if span[0] != span[1] and bool(np.any(sizes < least)):
         raise InputError(f"dt is {displayed(dt)}, below the round-off of times in t_span, {least:.2g}")
     try:
@@ -160,10 +163,7 @@ def shapes_named(args: Pytree) -> Iterator[None]:
 OF_SOLVE_IVP = {  # options of scipy's solve_ivp, and what there is in their place
     "method": "the method is step, such as step='rk45' or step=liehom.LieTaylor(6)",
     "vectorized": "psi is called on whole ensembles always: m of shape (..., N), t of shape (...,)",
-    "jac": "derivatives of psi are computed, by series or by tracing it",
-    "jac_sparsity": "derivatives of psi are computed, by series or by tracing it",
-    "lband": "derivatives of psi are computed, by series or by tracing it",
-    "uband": "derivatives of psi are computed, by series or by tracing it",
+    **dict.fromkeys(("jac", "jac_sparsity", "lband", "uband"), "derivatives of psi are computed by series or tracing"),
 }
 OF_PROPAGATOR = ("step", "exponential", "clock", "engine")  # what a propagator has, and its calls do not take
 OPTIONS = tuple({**EnsembleOptions.__annotations__, **FileOptions.__annotations__})

@@ -417,7 +417,7 @@ class Propagator:
         bound = self.field if args is None else self.field.with_args(args)
         if not on_jax:
             with shapes_named(args):
-                check_generator(bound, np.asarray(start), span[0])
+                check_generator(bound, np.asarray(start), span)
         return start, orbit_dimension, span, action, bound, args
 
     def __repr__(self) -> str:

@@ -1,4 +1,4 @@
-"""What a corrected step may use of the orbits of a call."""
+"""What a corrected step may use of the orbits of a call, and what a call refuses of psi."""
 
 from typing import Any
 
@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import liehom as lh
+from liehom.base.errors import ShapeError
 from liehom.flow.engines.arguments import with_tight_frame
 from liehom.flow.propagation.propagator import Propagator
 
@@ -33,3 +34,24 @@ def test_orbits_of_one_dimension_share_a_tight_frame() -> None:
 def test_other_calls_have_none(step: Any, start: Any, dimension: Any) -> None:
     plain = action()
     assert with_tight_frame(plain, step, start, dimension) is plain
+
+
+@pytest.mark.parametrize("engine", ["auto", "numpy"])
+@pytest.mark.parametrize(
+    "psi",
+    [
+        lambda m, t: -m + np.sin(3 * t) * np.array([0.3, 0.0, 0.1]),
+        lambda m, t: np.stack([m[..., 0], m[..., 1], m[..., 2] * t[-1]], axis=-1),
+    ],
+    ids=["component by component", "one time for all"],
+)
+def test_as_many_trajectories_as_components_do_not_share_their_times(psi: Any, engine: Any) -> None:
+    """All initial times are equal, so that only another time shows which trajectory a component belongs to."""
+    field = lh.GeneratorField(lh.adjoint(lh.so(3)), psi)
+    with pytest.raises(ShapeError, match=r"times of other ones: write np.sin\(t\)\[\.\.\., None\]"):
+        lh.integrate(field, (0, 2), np.full((3, 3), 3**-0.5), engine=engine)
+
+
+def test_parameters_and_times_of_as_many_trajectories_as_components_are_accepted() -> None:
+    field = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m, t: -m * np.array([[1], [2], [3]]) + np.sin(t)[..., None])
+    assert lh.integrate(field, (0, 1), np.eye(3)[::-1]).success

@@ -71,6 +71,18 @@ def test_a_step_across_the_cone_is_noticed_at_every_step_size(dt: float) -> None
         assert "up to t = " in str(sol.report)
 
 
+@pytest.mark.parametrize(
+    ("loose", "tight", "remedy"),
+    [({"rtol": 1e-3}, {"rtol": 1e-4}, "A smaller tolerance helps"), ({"dt": 0.1}, {"dt": 0.05}, "A smaller dt")],
+    ids=["adaptive", "fixed"],
+)
+def test_the_warning_next_to_the_cone_names_the_remedy_of_its_own_sizes(loose: Any, tight: Any, remedy: str) -> None:
+    """The path ends before it crosses: smaller steps stay more than two steps away, as the warning says."""
+    sol, caught = quietly(FIELD, (0, 0.88), CROSSING, step=STEP, **loose)
+    assert sol.status == LOST and remedy in str(caught[0].message)
+    assert quietly(FIELD, (0, 0.88), CROSSING, step=STEP, **tight).sol.status == KEPT
+
+
 def test_what_would_be_claimed_is_not_reached() -> None:
     """The negative control of the check: the errors of the runs that it flags."""
     end = lh.integrate(FIELD, (0, 2), CROSSING, step=lh.LieTaylor(8), dt=0.01).y[:, -1]
@@ -277,7 +289,9 @@ def test_the_heavy_top_says_without_a_printed_report_that_the_order_is_not_reach
     found = quietly(TOP, (0, 1), start, step=STEP, **how)
     assert found.sol.status == LOST and len(found.caught) == 1
     message = str(found.caught[0].message)
-    assert "did not keep its order 4 from t = 0" in message and "Adaptive sizes are those of order 1" in message
+    assert "did not keep its order 4 from t = 0" in message and "LieTaylor(4) needs no range condition" in message
+    assert ("Adaptive sizes are those of order 1" in message) is ("rtol" in how)
+    assert "dt" not in message
     assert not quietly(TOP, (0, 1), start, step=lh.LieTaylor(4), **how).caught
 
 
