@@ -410,6 +410,10 @@ class AlgebraicNumber(ExactNumber, Typeset, Immutable):
             base, exponent = base * base, exponent >> 1
         return result
 
+    def __bool__(self) -> bool:
+        """False for 0, as for other numbers."""
+        return bool(self.polynomial)
+
     def __eq__(self, other: object) -> bool:
         try:
             right = None if isinstance(other, str) else self._operand(other)  # a string hashes otherwise

@@ -451,8 +451,8 @@ class _Block:
         entries = [v for row in self.table for v in row if not v.is_zero()]
         used = {i for v in entries for i, d in enumerate(v.degrees()) if d}
         degree = factors * max(v.total_degree() for v in entries)
-        homogeneous = all(sum(e) == v.total_degree() for v in entries for e in v.to_dict())
-        return comb(len(used) + degree - (1 if homogeneous else 0), degree)
+        homogeneous = bool(used) and all(sum(e) == v.total_degree() for v in entries for e in v.to_dict())
+        return comb(len(used) + degree - homogeneous, degree)
 
 
 def primitive(row: Vector, zero: Poly) -> Vector:

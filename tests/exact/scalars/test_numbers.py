@@ -58,3 +58,8 @@ def test_floats_beyond_their_range(field: Any) -> None:
     assert field.to_float(field.convert(10**400)) == math.inf
     assert field.to_float(field.convert(f"1/{10**400}")) == 0.0
     assert field.to_float(field.convert(f"{10**400}/{10**399}")) == 10.0
+
+
+def test_zero_is_false_in_every_field() -> None:
+    assert not ROOT2.zero and ROOT2.one and ROOT2.generator and not ROOT2.generator - ROOT2.generator
+    assert not QQ.zero and QQ.one

@@ -65,3 +65,9 @@ def test_a_condition_inside_another_one_is_left_out() -> None:
     for other, kept in ((x, ["x0"]), (z, ["x2", "x0^2+x1^2"])):
         conditions, sharp = PolynomialMatrix(3, [[squares, {}], [{}, other]], (2, 2)).rank_conditions()
         assert sharp and [str(p).replace(" ", "") for p in conditions] == kept
+
+
+def test_conditions_of_a_constant_matrix() -> None:
+    M = PolynomialMatrix(2, [[{(0, 0): 1}, {(0, 0): 1}], [{}, {(0, 0): 1}]], (2, 2))
+    conditions, _ = M.rank_conditions()
+    assert M.rank == 2 and all(value(p, [0, 0]) != 0 for p in conditions)
