@@ -22,7 +22,7 @@ ROOT = FILE.parent.parent
 GOLDEN_RATIO = 0.6180339887498949
 EXAMPLES_PER_DEFAULT_EXAMPLE = 4  # hypothesis draws this many times more examples with `--slow`
 SHARDS = 64  # one of them beside the default run is about a minute of processor time
-SHARD_SECONDS = 60.0  # after which a process begins no further test of a shard
+SHARD_SECONDS = 20.0  # after which a process begins no further test of a shard
 
 whole = False  # set by conftest before any test module is imported
 shard: int | None = None  # so is this
