@@ -124,8 +124,8 @@ def test_roots_are_joint_eigenvalues(name: str, seed: int) -> None:
             exact = g.field.to_float(matrix.trace())
             size = max(1.0, max(float(abs(values[j]).mid()) for values in data.spectrum.values)) ** power
             assert abs(float(total.real.mid()) - exact) <= float(total.rad()) + 1e-12 * size
-            # balls of different roots are disjoint, no more; powers of them are wider
-            assert power > 1 or float(total.rad()) <= 0.2 * size
+            # balls of different roots are disjoint, no more: their sum may be as wide as the largest root
+            assert power > 1 or float(total.rad()) <= size
     assert {tuple(-x for x in root) for root in data.roots} == set(data.roots) == set(data.root_system.roots)
 
 
