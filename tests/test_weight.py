@@ -24,8 +24,8 @@ WEIGHTS: tuple[tuple[int, int, int, str], ...] = (
         "often or large systems; the generic range condition and the invariant geometry of G/H, for pairs",
     ),
     (
-        93921,
-        49629,
+        93924,
+        49628,
         309,
         "names of algebras with a radical, branching rules and Casimirs, for physicists and Lie theory; names of "
         "spaces and geodesics, for geometers; controllability, rotations and Riccati flows, for engineers",

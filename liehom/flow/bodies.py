@@ -18,7 +18,7 @@ from liehom.base.typing import Array, IntegerArray, Values
 from liehom.flow.action.components import joined
 from liehom.flow.action.field import GeneratorField
 from liehom.flow.action.maps import FieldMatrix
-from liehom.flow.action.rigid_motions import matrix_to_quaternion, quaternion_to_matrix
+from liehom.flow.action.rigid_motions import are_rotations, matrix_to_quaternion, quaternion_to_matrix
 from liehom.flow.door import QQ, ExactMatrix, LieAlgebra, Representation, abelian, adjoint, direct_sum, so
 from liehom.flow.engines.arguments import SingleRunOptions
 from liehom.flow.propagation.integration import integrate
@@ -85,8 +85,7 @@ def rotations(attitude: npt.ArrayLike | None) -> Array:
         raise ShapeError(
             f"the attitude at time 0 has shape {q.shape}, expected (..., 3, 3), or (..., 4) for quaternions"
         )
-    gram = q @ np.swapaxes(q, -1, -2)
-    if not np.allclose(gram, np.eye(3), rtol=0, atol=ROTATION_ATOL) or np.any(np.linalg.det(q.astype(float)) < 0):
+    if not are_rotations(q, ROTATION_ATOL):
         raise InputError("the attitude at time 0 is not a rotation matrix")
     return q
 

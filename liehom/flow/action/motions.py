@@ -13,6 +13,7 @@ import numpy as np
 from liehom.base.errors import InputError, ShapeError
 from liehom.base.typing import Values, ValuesLike
 from liehom.flow.action.rigid_motions import (
+    are_rotations,
     matrix_to_quaternion,
     quaternion_to_matrix,
     se3_exp,
@@ -36,11 +37,8 @@ def _read(x: ValuesLike, shape: tuple[int, ...], what: str) -> Values:
 
 def _check_rotation(matrix: Values) -> None:
     """Refuse numpy arrays that are not rotations; values of JAX may be traced and are not checked."""
-    if is_jax(matrix):
-        return
-    defect = np.abs(matrix @ np.swapaxes(matrix, -1, -2) - np.eye(3)).max(initial=0.0)
-    if not defect <= TOLERANCE or not np.all(np.linalg.det(np.asarray(matrix, float)) > 0):
-        raise InputError(f"no rotation: R R^T differs from 1 by {defect:.1e}, or det R is not positive")
+    if not is_jax(matrix) and not are_rotations(np.asarray(matrix), TOLERANCE):
+        raise InputError(f"no rotation: R R^T differs from 1 by more than {TOLERANCE}, or det R is not positive")
 
 
 def _skew(x: Values) -> Values:

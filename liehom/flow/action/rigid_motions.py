@@ -10,7 +10,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from liehom.base.typing import Values, ValuesLike
+from liehom.base.typing import Array, Values, ValuesLike
 from liehom.flow.action.exponential import rotation_quotients
 from liehom.flow.series.arrays import as_values, is_jax, namespace
 from liehom.flow.series.lie_series import bernoulli
@@ -18,6 +18,12 @@ from liehom.flow.series.lie_series import bernoulli
 # Unit quaternions (w, x, y, z), scalar part first, and the rotation matrices that they denote.
 #
 # q v q^-1 = R(q) v,   R(q) = R(-q),   R(p q) = R(p) R(q)
+
+
+def are_rotations(matrices: Array, atol: float) -> bool:
+    """Whether the entries of R R^T differ from those of 1 by at most atol, and det R > 0, for matrices (..., 3, 3)."""
+    near = np.allclose(matrices @ np.swapaxes(matrices, -1, -2), np.eye(3), rtol=0, atol=atol)
+    return bool(near and np.all(np.linalg.det(matrices.astype(float)) > 0))
 
 
 def quaternion_to_matrix(q: Values) -> Values:
