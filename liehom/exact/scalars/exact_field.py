@@ -22,7 +22,6 @@ from liehom.base.objects import Immutable
 from liehom.base.typing import ScalarLike
 from liehom.exact.scalars.field import Field, Matrix, MatrixLike, Scalar, rows_of
 from liehom.exact.scalars.integer_matrices import (
-    bounded_echelon,
     cancelled,
     characteristic_coefficients,
     echelon_pivots,
@@ -30,12 +29,15 @@ from liehom.exact.scalars.integer_matrices import (
     interleaved,
     kernel_rows,
     lifted_inverse,
+    over_common_denominator,
+    selecting,
     separated,
     sign_changes,
     stacked_rows,
     zero_matrix,
 )
 
+LARGEST_PRODUCT = 200  # rows or columns up to which a product selects entries faster than a list of them
 MIN_GUESSED_SIZE = 40  # from which an integral inverse is guessed modulo a prime
 _set = object.__setattr__
 
@@ -84,13 +86,9 @@ class ExactField(Field["ExactMatrix"]):
 
     def from_entries(self, entries: Sequence[Scalar], nrows: int, ncols: int) -> ExactMatrix:
         """The matrix of shape (nrows, ncols) with these field elements, row after row."""
-        if self.degree == 1:
-            numerators, common = flint.fmpq_mat(nrows, ncols, list[Any](entries)).numer_denom()
-            return ExactMatrix(self, (numerators,), int(common))
-        parts = list(zip(*map(self.coordinates, entries), strict=True)) or [()] * self.degree
-        split = [flint.fmpq_mat(nrows, ncols, list(part)).numer_denom() for part in parts]
-        den: int = lcm(*(int(d) for _, d in split))
-        return ExactMatrix(self, tuple(a * (den // int(d)) for a, d in split), den)
+        columns = [entries] if self.degree == 1 else list(zip(*map(self.coordinates, entries), strict=True))
+        parts = [flint.fmpq_mat(nrows, ncols, list[Any](x)) for x in columns or [()] * self.degree]
+        return ExactMatrix(self, *over_common_denominator(parts))
 
     def from_integers(self, entries: Sequence[int | flint.fmpz], nrows: int, ncols: int, den: int = 1) -> ExactMatrix:
         """The matrix of shape (nrows, ncols) with these integers, row after row, over a common denominator."""
@@ -178,16 +176,18 @@ class ExactMatrix(Matrix, Immutable):
         return np.array(values, dtype=np.float64).reshape(self.shape)
 
     def select(self, rows: Sequence[int] | None = None, columns: Sequence[int] | None = None) -> ExactMatrix:
-        n = self.ncols
-        if columns is None and rows is not None and 8 * len(rows) >= self.nrows:
-            places = [i * n + j for i in rows for j in range(n)]
-            return self._rearranged(places, len(rows), n)
-        rows = range(self.nrows) if rows is None else rows
-        columns = range(n) if columns is None else columns
-        if 8 * len(rows) * len(columns) < self.nrows * n:
-            parts = [[a[i, j] for i in rows for j in columns] for a in self.parts]
-            return self._field.from_parts(parts, len(rows), len(columns), self.den)
-        return self._rearranged([i * n + j for i in rows for j in columns], len(rows), len(columns))
+        (nrows, ncols), parts = self.shape, self.parts
+        few = rows is not None and columns is not None and 8 * len(rows) * len(columns) < nrows * ncols
+        if max(self.shape) <= LARGEST_PRODUCT and not few:
+            parts = parts if rows is None else tuple(selecting(rows, nrows) * a for a in parts)
+            parts = parts if columns is None else tuple(a * selecting(columns, ncols).transpose() for a in parts)
+            return ExactMatrix(self._field, parts, self.den).normalized()
+        rows, columns = range(nrows) if rows is None else rows, range(ncols) if columns is None else columns
+        if few:
+            entries = [[a[i, j] for i in rows for j in columns] for a in parts]
+        else:
+            entries = [[t[i * ncols + j] for i in rows for j in columns] for t in (a.entries() for a in parts)]
+        return self._field.from_parts(entries, len(rows), len(columns), self.den)
 
     def reshape(self, nrows: int, ncols: int) -> ExactMatrix:
         parts = tuple(flint.fmpz_mat(nrows, ncols, a.entries()) for a in self.parts)
@@ -199,11 +199,6 @@ class ExactMatrix(Matrix, Immutable):
         cuts = [slice(i * size, (i + 1) * size) for i in range(self.nrows)]
         parts = (tuple(flint.fmpz_mat(nrows, ncols, t[cut]) for t in tables) for cut in cuts)
         return [ExactMatrix(self._field, part, self.den) for part in parts]
-
-    def _rearranged(self, places: list[int], nrows: int, ncols: int) -> ExactMatrix:
-        tables = [a.entries() for a in self.parts]
-        parts = tuple(flint.fmpz_mat(nrows, ncols, [t[x] for x in places]) for t in tables)
-        return ExactMatrix(self._field, parts, self.den)
 
     def normalized(self) -> ExactMatrix:
         """The matrix with its common denominator made as small as possible."""
@@ -227,6 +222,8 @@ class ExactMatrix(Matrix, Immutable):
             return NotImplemented
         if self.shape != other.shape or self._field != other._field:
             return False
+        if self.den == other.den:
+            return self.parts == other.parts
         return all(a * other.den == b * self.den for a, b in zip(self.parts, other.parts, strict=True))
 
     def __hash__(self) -> int:
@@ -346,8 +343,8 @@ class ExactMatrix(Matrix, Immutable):
             return self._field.zeros(0, ncols), []
         if self.nrows >= ncols and int(self.modulo().rank()) == ncols:
             return self._field.identity(ncols), list(range(ncols))  # independent modulo a prime, so independent
-        reduced, den, full_rank = bounded_echelon(self._restricted())
-        parts = separated(reduced, m, rank := full_rank // m)
+        reduced, den, full_rank = self._restricted().rref()  # cannot be interrupted
+        parts = separated(reduced, m, rank := int(full_rank) // m)
         sign = -1 if den < 0 else 1
         matrix = ExactMatrix(self._field, tuple(a * sign for a in parts), int(den) * sign).normalized()
         return matrix, echelon_pivots(matrix.parts, rank)

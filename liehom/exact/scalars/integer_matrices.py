@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import itertools
+import math
 import random
 from collections.abc import Sequence
 
@@ -12,10 +13,9 @@ import flint
 from liehom.base.budget import in_time, within
 
 LARGE_SIZE = 60  # from which characteristic polynomials are computed prime by prime
-LONG_BITS, SAMPLED_ENTRIES = 2000, 100
-LONG_ENTRIES = 4000  # bits of an entry from which the size of minors is estimated
+LONG_BITS = 2000  # of an entry, from which the size of minors is estimated
 UNINTERRUPTED = "one call of flint that the limit `seconds` does not end, may need {} bytes"
-MAX_DIRECT_ENTRIES = 64  # whose gcd is taken one by one
+KEPT_IDENTITY = 64  # largest identity matrix that is kept
 
 
 def zero_matrix(nrows: int, ncols: int) -> flint.fmpz_mat:
@@ -26,11 +26,13 @@ def zero_matrix(nrows: int, ncols: int) -> flint.fmpz_mat:
 
 
 def integer_identity(n: int) -> flint.fmpz_mat:
-    """The identity matrix (n, n)."""
-    one = zero_matrix(n, n)
-    for i in range(n):
-        one[i, i] = 1
-    return one
+    """The identity matrix (n, n), which must not be changed."""
+    return _small_identity(n) if n <= KEPT_IDENTITY else selecting(range(n), n)
+
+
+@functools.cache
+def _small_identity(n: int) -> flint.fmpz_mat:
+    return selecting(range(n), n)
 
 
 def stacked_rows(blocks: Sequence[flint.fmpz_mat], ncols: int) -> flint.fmpz_mat:
@@ -45,12 +47,19 @@ def stacked_rows(blocks: Sequence[flint.fmpz_mat], ncols: int) -> flint.fmpz_mat
 def cancelled(parts: tuple[flint.fmpz_mat, ...], den: int) -> tuple[tuple[flint.fmpz_mat, ...], int]:
     """Numerators and denominator of a matrix after cancelling their common factor."""
     in_time()  # after every product of matrices
-    common = flint.fmpz(den)
+    bound = flint.fmpz(den)  # a multiple of the common factor, by one combination of the rows or of the columns
     for a in parts:
-        common = common if common == 1 else _common_factor(common, a)
-    if common == 1:
+        bound = bound if bound == 1 else _gcd_of(bound, _combination(a))
+    if bound == 1:
         return parts, den
-    return tuple((flint.fmpq_mat(a) / common).numer_denom()[0] for a in parts), den // int(common)
+    return over_common_denominator([flint.fmpq_mat(a) / den for a in parts])
+
+
+def over_common_denominator(parts: Sequence[flint.fmpq_mat]) -> tuple[tuple[flint.fmpz_mat, ...], int]:
+    """Numerators over the least common denominator."""
+    split = [a.numer_denom() for a in parts]
+    least = math.lcm(*(int(d) for _, d in split))
+    return tuple(a * (least // int(d)) for a, d in split), least
 
 
 def sign_changes(signs: Sequence[int]) -> int:
@@ -139,8 +148,8 @@ def characteristic_coefficients(matrix: flint.fmpz_mat) -> list[flint.fmpz]:
 def require_small_answer(matrix: flint.fmpz_mat, degree: int) -> None:
     """Raise `LimitError` if an echelon form of numbers of over `LONG_BITS` bits may need too much memory (Hadamard)."""
     nrows, ncols = matrix.nrows(), matrix.ncols()
-    places = range(0, nrows * ncols, 1 + nrows * ncols // SAMPLED_ENTRIES)
-    bits = max((matrix[divmod(x, ncols)].bit_length() for x in places), default=0)
+    # one combination has only a few bits more or less than the largest entry
+    bits = max((x.bit_length() for x in _combination(matrix)), default=0)
     if bits > LONG_BITS:
         rank = degree * min(nrows, ncols)
         what = f"the echelon form of a matrix ({nrows}, {ncols}) of numbers of {bits} bits, {UNINTERRUPTED}"
@@ -158,16 +167,11 @@ def separated(restricted: flint.fmpz_mat, degree: int, nrows: int) -> list[flint
     return [flint.fmpz_mat(nrows, width // degree, [x for row in rows for x in row[s::degree]]) for s in range(degree)]
 
 
-def _common_factor(number: flint.fmpz, matrix: flint.fmpz_mat) -> flint.fmpz:
-    """gcd(number, all entries): it divides the gcd of one combination of rows and nearly always equals it."""
+def _combination(matrix: flint.fmpz_mat) -> list[flint.fmpz]:
+    """A combination of the rows or of the columns, whichever has fewer entries."""
     nrows, ncols = matrix.nrows(), matrix.ncols()
-    if nrows * ncols <= MAX_DIRECT_ENTRIES:
-        return _gcd_of(number, matrix.entries())
-    one_row = matrix * _weights(ncols).transpose() if nrows < ncols else _weights(nrows) * matrix
-    bound = _gcd_of(number, one_row.entries())
-    if bound == 1 or (flint.fmpq_mat(matrix) / bound).numer_denom()[1] == 1:
-        return bound
-    return _gcd_of(bound, matrix.entries())
+    product = matrix * _weights(ncols).transpose() if nrows < ncols else _weights(nrows) * matrix
+    return product.entries()
 
 
 def _gcd_of(number: flint.fmpz, entries: Sequence[flint.fmpz]) -> flint.fmpz:
@@ -183,15 +187,3 @@ def _weights(n: int) -> flint.fmpz_mat:
     """Row of n fixed pseudo-random integers."""
     rng = random.Random(n)
     return flint.fmpz_mat(1, n, [rng.randint(1, 1 << 20) for _ in range(n)])
-
-
-def bounded_echelon(matrix: flint.fmpz_mat) -> tuple[flint.fmpz_mat, flint.fmpz, int]:
-    """Reduced echelon form over a denominator, and the rank; `LimitError` if its minors may need too much memory."""
-    rank, columns = matrix.nrows(), matrix.ncols()
-    # one combination of the columns has only a few bits more or less than the largest entry
-    bits = max((x.bit_length() for x in (matrix * _weights(columns).transpose()).entries()), default=0)
-    if bits > LONG_ENTRIES:
-        what = f"the echelon form of a {rank} x {columns} matrix, {UNINTERRUPTED}"
-        within("memory", 2 * rank * columns * rank * bits // 8, what)
-    reduced, den, rank = matrix.rref()  # one call of flint, which cannot be interrupted
-    return reduced, den, int(rank)

@@ -33,7 +33,7 @@ def test_flint_is_not_asked_for_more_memory_than_allowed() -> None:
 
 def test_an_echelon_form_of_long_numbers_is_refused_by_its_size() -> None:
     long = flint.fmpz_mat(40, 40, [(1 << 60_000) + x for x in range(1600)])
-    with pytest.raises(LimitError, match="60001 bits"):
+    with pytest.raises(LimitError, match=r"60\d\d\d bits"):
         require_small_answer(long, 2)
     require_small_answer(long, 1)
     with lh.limits(memory=10**8), pytest.raises(LimitError):

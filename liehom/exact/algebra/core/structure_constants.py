@@ -345,10 +345,11 @@ class StructureConstants(Immutable):
         if 0 in (n, p, q, r) or size > MOST_FLOATS or (c := self.floats()) is None:
             return None
         one = self.field.identity(n)
-        # None stands for the identity
-        factors = [None if a == one else exact_floats(a) for a in (left, right, out) if isinstance(a, ExactMatrix)]
-        if any(f is None and a != one for f, a in zip(factors, (left, right, out), strict=True)):
-            return None
+        factors: list[Array | None] = []  # None stands for the identity
+        for a in (left, right, out):
+            factors.append(None if a == one else exact_floats(cast(ExactMatrix, a)))
+            if factors[-1] is None and a != one:
+                return None
         x, y, z = factors
         sums = [1.0 if f is None else float(np.abs(f).sum(axis=1).max()) for f in (x, y)]
         if (
