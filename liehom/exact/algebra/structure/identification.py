@@ -28,6 +28,8 @@ from liehom.exact.algebra.structure.levi import levi_decomposition
 from liehom.exact.algebra.structure.naming import identify
 from liehom.exact.algebra.structure.root_spaces import cartan_subalgebra, root_data
 
+MOST_DEGREE = 2  # of a field over which a summary looks for a name; `identify` has no such limit
+
 # Complex type and real form of a semisimple algebra by name, exactly and in any basis.
 # A simple algebra over the field splits over the reals by the places of its centroid (`ideals`).  The complex
 # type of each part follows from its dimension and rank.  If several types have these (B_n, C_n and E6), the Dynkin
@@ -198,11 +200,11 @@ def _with_radical(algebra: LieAlgebra) -> list[str]:
 
 
 def small_name(algebra: LieAlgebra) -> str:
-    """The name of an algebra of dimension at most 6 in the tables, an empty string if that is unknown."""
+    """The name of an algebra of dimension at most 6 in the tables, an empty string if that is unknown or takes long."""
     if algebra.dimension > 6:
         return ""
     try:
-        return identify(algebra).name
+        return identify(algebra, MOST_DEGREE).name
     except UndecidedError:
         return ""
 

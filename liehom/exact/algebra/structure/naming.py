@@ -109,12 +109,12 @@ class _Part:
     largest: bool = True  # it is proved that no larger parameters give an isomorphic algebra
 
 
-def identify(algebra: LieAlgebra) -> Identification:
-    """Implements `LieAlgebra.identify`."""
-    return _identified(algebra)[0]
+def identify(algebra: LieAlgebra, most_degree: int | None = None) -> Identification:
+    """Implements `LieAlgebra.identify`; `UndecidedError` if the map needs a field of a larger degree."""
+    return _identified(algebra, most_degree)[0]
 
 
-def _identified(algebra: LieAlgebra) -> tuple[Identification, Extension, list[_Part]]:
+def _identified(algebra: LieAlgebra, most_degree: int | None = None) -> tuple[Identification, Extension, list[_Part]]:
     """The name of an algebra, the extension of its field over which the map is defined, and the summands."""
     up = trivial_extension(exact_field(algebra, "names of algebras"))
     while True:
@@ -123,6 +123,8 @@ def _identified(algebra: LieAlgebra) -> tuple[Identification, Extension, list[_P
             parts = _parts(larger)
         except LargerFieldError as error:
             up = up.then(error.extension)
+            if most_degree is not None and up.field.degree > most_degree:
+                raise UndecidedError(f"the name needs a field of degree {up.field.degree}") from error
             continue
         field = up.field
         source = direct_sum(*(part.row.algebra(part.values, field) for part in parts)) if parts else algebra
