@@ -1,4 +1,4 @@
-"""Eighteen questions to eleven algebras, here and in GAP in one run: `python -m tests.benchmarks.structure_grid`.
+"""Eighteen questions to eleven algebras, here and in GAP in one run: `OMP_NUM_THREADS=1 python -m tests.benchmarks.structure_grid`.
 
 Processor seconds on fresh objects. Words in the arguments select questions or algebras; `--here` leaves GAP out, and
 `--e8` asks split E8. An answer that differs from GAP's ends the run. GAP is `gap` on the path.

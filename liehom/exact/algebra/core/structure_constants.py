@@ -460,7 +460,10 @@ class StructureConstants(Immutable):
         if brackets is None or values is None:
             return None
         # the unknown c_ij come first, since x determines them; their scale and sign do not matter
-        wide = np.vstack([np.kron(np.eye(k), values), brackets.transpose(1, 0, 2).reshape(n, k * n)])
+        wide = np.zeros((k * k + n, k, n))
+        for i in range(k):
+            wide[i * k : (i + 1) * k, i] = values
+        wide[k * k :] = brackets.transpose(1, 0, 2)
         wide = wide[:, wide.any(axis=0)]
         return _from_floats(rows.field, wide, wide.shape, 1)
 
