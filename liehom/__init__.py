@@ -29,4 +29,4 @@ providers["html"] = "liehom.io.renderings", "html"
 providers["step by name"] = "liehom.flow.methods.named", "step_named"
 providers["work precision"] = "liehom.plotting.error_plot", "plot_work_precision"
 
-__version__ = "0.2.0.dev0"
+__version__ = "0.2.0"

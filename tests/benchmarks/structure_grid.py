@@ -1,25 +1,31 @@
-"""Eighteen questions to eleven algebras, here and in GAP in one run: `OMP_NUM_THREADS=1 python -m tests.benchmarks.structure_grid`.
+"""Eighteen questions to eleven algebras, here and in GAP in one run.
+
+    OMP_NUM_THREADS=1 python -m tests.benchmarks.structure_grid
 
 Processor seconds on fresh objects. Words in the arguments select questions or algebras; `--here` leaves GAP out, and
-`--e8` asks split E8. An answer that differs from GAP's ends the run. GAP is `gap` on the path.
+`--e8` asks split E8. An answer that differs from GAP's ends the run. GAP is `gap` on the path. `--write FILE` puts the
+table of what a run has printed to a file into docs/performance-exact.md.
 """
 
 import random
+import re
 import statistics
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
+from pathlib import Path
 from typing import Any
 
 import liehom as lh
 from liehom.exact.algebra.core.jacobi import prove_jacobi
 from liehom.exact.algebra.core.lie_algebra import LieAlgebra
 from tests.benchmarks.peers_gap import seconds_of
-from tests.benchmarks.structure_report import least, seconds, shown
+from tests.benchmarks.structure_report import PAGE, least, seconds, shown
 from tests.benchmarks.structure_tasks import Task, exceptional, fresh, mixed, scrambled
 from tests.oracles.gap_process import Gap
 
+BEGIN, END = "<!-- grid: begin -->", "<!-- grid: end -->"
 LIMIT = 30.0  # seconds by the clock after which GAP is stopped
 QUICK = 0.02  # seconds below which a ratio of one case is not judged
 SEMISIMPLE = ("so8", "sl8", "E6", "E7", "so53", "sl6")
@@ -130,7 +136,27 @@ def row(question: Question, name: str, gap: Gap | None) -> tuple[float, float | 
     return here, there
 
 
+def table(printed: str) -> str:
+    """One row for each question: the geometric mean of the ratios, the smallest one, and the longest time here."""
+    lines = re.findall(r"^(.{14}) (\S+) +(\S+)(.*) (\d+\.\d\d)$", printed, re.MULTILINE)
+    rows = ["| question | GAP / liehom, mean | smallest | longest here, s |", "|---|---|---|---|"]
+    for name in dict.fromkeys(line[0] for line in lines):
+        cases = [(float(ratio), algebra, float(here)) for n, algebra, here, _, ratio in lines if n == name]
+        judged = [case for case in cases if case[0] > 0]
+        (least_ratio, where, _), (_, slow, longest) = min(judged), max(cases, key=lambda case: case[2])
+        mean = statistics.geometric_mean(case[0] for case in judged)
+        rows.append(f"| {name.strip()} | {mean:.2g} | {least_ratio:.2g} ({where}) | {shown(longest)} ({slow}) |")
+    return "\n".join(rows)
+
+
 def main() -> None:
+    if "--write" in sys.argv:
+        text, printed = PAGE.read_text(encoding="utf-8"), Path(sys.argv[-1]).read_text(encoding="utf-8")
+        before, _, rest = text.partition(BEGIN)
+        lines = [line for line in printed.splitlines() if line[15:20] != "mean "]
+        new = f"{before}{BEGIN}\n{table(chr(10).join(lines))}\n{END}{rest.partition(END)[2]}"
+        PAGE.write_text(new, encoding="utf-8")
+        return
     words = [word for word in sys.argv[1:] if not word.startswith("--")]
     algebras = ("E8",) if "--e8" in sys.argv else NAMES
     missed = []
