@@ -1,7 +1,7 @@
 """The numbers of paper.md and where they come from: `python -m paper.numbers [--update]` in the root of the repository.
 
-A number in the text is followed by `<!--key-->`. With `--update` the numbers are written into the paper, else keys whose
-number is another one are printed. `tests/test_paper.py` does the same.
+A number in the text is followed by `<!--key-->`. With `--update` the numbers are written into the paper, else the
+program ends with an error that names those that differ. `tests/test_paper.py` compares them too.
 """
 
 from __future__ import annotations
@@ -44,18 +44,18 @@ def numbers() -> dict[str, str]:
     grid = cells("performance-exact.md", "grid")[2:]
     means = [float(row[1]) for row in grid]
     values |= {"questions": str(len(grid)), "gap least": f"{min(means):.1f}", "gap most": f"{max(means):.0f}"}
-    theorems = [x for x in cells("formal.md", "theorems")[2:]]
+    theorems = cells("formal.md", "theorems")[2:]
     lines = sum(len(file.read_text().splitlines()) for file in (ROOT / "docs/formal/theories").glob("*.v"))
     return values | {"theorems": str(len(theorems)), "coq lines": f"{lines:,}"}
 
 
 def main() -> None:
+    """Compare the paper with its sources, or update it."""
     values, text = numbers(), PAPER.read_text(encoding="utf-8")
     if "--update" in sys.argv:
         PAPER.write_text(KEYED.sub(lambda m: f"{values[m[2]]}<!--{m[2]}-->", text), encoding="utf-8")
-    for said, key in KEYED.findall(text):
-        if said != values[key]:
-            print(f"{key}: {said} in the paper, {values[key]} in its source")
+    elif stale := [f"{key}: {said}, not {values[key]}" for said, key in KEYED.findall(text) if said != values[key]]:
+        sys.exit("\n".join(stale))
 
 
 if __name__ == "__main__":
