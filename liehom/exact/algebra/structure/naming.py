@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, lru_cache
-from itertools import product
+from itertools import chain, product
 from typing import NoReturn, final
 
 from liehom.base.errors import InputError, InternalError, SingularError, UndecidedError, displayed
@@ -34,6 +34,7 @@ from liehom.exact.scalars.extension import Extension, real_factors, trivial_exte
 from liehom.exact.scalars.field import Scalar
 from liehom.exact.scalars.polynomial import Polynomial
 from liehom.exact.scalars.rational import QQ
+from liehom.exact.scalars.subspaces import orthogonal_basis
 
 MAX_SEARCHED = 8  # dimension of algebras without a name between which a map is sought
 SIGNS = (1, -1, 0)  # values of a parameter that the weights do not determine
@@ -294,8 +295,8 @@ def _weights(algebra: LieAlgebra) -> _Weights:
         x = field.matrix([[(attempt + 1) ** (3 * b) for b in range(acting.nrows)]]) @ acting
         action = algebra.ad(x).T
         factors = Polynomial(field, action.characteristic_coefficients()).factor()
-        if best is None or len(factors) > len(best[1]):
-            best = action, factors
+        if best is None or sum(f.degree for f, _ in factors) > sum(f.degree for f, _ in best[1]):
+            best = action, factors  # more weights are different from one another
     if best is None:
         raise InternalError("no element of a Cartan subalgebra was tried")
     action, factors = best
@@ -511,18 +512,23 @@ def _candidates_with_levi_factor(algebra: LieAlgebra) -> Iterator[Option]:
     row = rows()[5, 40] if n == 5 else rows()[3, 9 if compact else 8]
     if n == 5 and compact:
         return
-    element, length = _of_square_length(killing.scale(-1) if compact else killing)
-    image = element @ as_exact(levi.basis).scale((2 if n == 5 else 1) / length)
+    form, basis = killing.scale(-1) if compact else killing, as_exact(levi.basis)
+    element, length = _of_square_length(form)
     one, none = field.identity(n), field.zeros(0, n)
-    seeds = [(one.select(rows=range(3)), as_exact(levi.basis)), (one.select(rows=range(3, n)), as_exact(radical.basis))]
-    yield row, (), seeds, {2 if compact else 1: (image, none)}
+    cosets = {2 if compact else 1: (element @ basis.scale((2 if n == 5 else 1) / length), none)}
+    if compact:  # a second element, orthogonal to the first one
+        across = (form @ element.T).left_null_space()
+        second, length = _of_square_length(across @ form @ across.T)
+        cosets[0] = (second @ across @ basis.scale(field.one / length), none)
+    seeds = [(one.select(rows=range(3)), basis), (one.select(rows=range(3, n)), as_exact(radical.basis))]
+    yield row, (), seeds, cosets
 
 
 def _of_square_length(form: ExactMatrix) -> tuple[ExactMatrix, Scalar]:
     """A vector x and a root of form(x, x) / 2 > 0; `LargerFieldError` if no small vector has a root in the field."""
     field, positive = form.field, []
-    for entries in sorted(product(range(-2, 3), repeat=3), key=lambda row: (sum(map(abs, row)), row)):
-        x = field.matrix([entries])
+    small = sorted(product(range(-2, 3), repeat=form.nrows), key=lambda row: (sum(map(abs, row)), row))
+    for x in chain((field.matrix([entries]) for entries in small), orthogonal_basis(form)[0]):
         square = (x @ form @ x.T)[0, 0] / 2
         if square > 0:
             f = Polynomial(field, [-square, 0, 1])

@@ -70,6 +70,11 @@ def test_a_row_is_named_in_a_scrambled_basis(name: str) -> None:
     require_named(name, 0, 1)
 
 
+@pytest.mark.parametrize(("name", "base"), [("A3,9", 41), ("A3,9", 47), ("A5,37", 7), ("A5,39", 90), ("A5,40", 60)])
+def test_bases_with_large_fields_negative_lengths_or_weights_that_meet(name: str, base: int) -> None:
+    assert scrambled(member(ROWS[name], 0), base).identify().name == name
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ROWS)
 def test_a_row_is_named_for_all_sampled_parameters(name: str) -> None:
