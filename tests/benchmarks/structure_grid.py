@@ -145,9 +145,8 @@ def table(printed: str) -> str:
         judged = [case for case in cases if case[0] > 0]
         (least_ratio, where, _), (_, slow, longest) = min(judged), max(cases, key=lambda case: case[2])
         mean = statistics.geometric_mean(case[0] for case in judged)
-        rows.append(
-            f"| {name.strip()} | {mean:.{1 if mean < 10 else 0}f} | {least_ratio:.2g} ({where}) | {shown(longest)} ({slow}) |"
-        )
+        ratio = f"{mean:.1f}" if mean < 10 else f"{mean:.0f}"
+        rows.append(f"| {name.strip()} | {ratio} | {least_ratio:.2g} ({where}) | {shown(longest)} ({slow}) |")
     return "\n".join(rows)
 
 
