@@ -32,7 +32,7 @@ from liehom.exact.geometry.reductive import (
 from liehom.exact.representations.core.pair import Pair
 from liehom.exact.representations.invariants.intertwiners import MatrixAlgebra, invariant_forms
 from liehom.exact.scalars.exact_field import ExactField, ExactMatrix
-from liehom.exact.scalars.field import Matrix
+from liehom.exact.scalars.field import Matrix, MatrixLike
 from liehom.exact.scalars.function_field import FunctionField, RationalFunction
 from liehom.exact.scalars.rational import QQ
 
@@ -132,12 +132,15 @@ class InvariantMetrics:
         blocks = [self.reference @ p for p in parts]
         return sorted(blocks, key=lambda f: (f.rank(), f.first_nonzero_row() or 0))
 
-    def __call__(self, parameters: Sequence[ScalarLike]) -> InvariantMetric:
+    def __call__(self, parameters: Sequence[ScalarLike] | MatrixLike) -> InvariantMetric:
         """The metric x_1 F_1 + ... + x_r F_r; `SingularError` if it is degenerate.
 
-        The r numbers are of the field of the pair or, if that is QQ, of one real number field.
+        The r numbers are of the field of the pair or, if that is QQ, of one real number field. In their place the
+        symmetric matrix (d, d) of an invariant form may stand.
         """
         values: list[Any] = list(parameters)
+        if values and isinstance(values[0], (Sequence, np.ndarray)) and not isinstance(values[0], str):
+            values = self._parameters_of(values)
         if len(values) != self.dimension:
             raise ShapeError(f"{len(values)} parameters were given, expected {self.dimension}")
         field: Any = self.split.field
@@ -150,6 +153,16 @@ class InvariantMetrics:
         if not isinstance(field, ExactField):
             raise FieldError("the parameters have floats; give fractions, or strings such as 'sqrt(2)'")
         return InvariantMetric(self, tuple(map(field.convert, values)), field)
+
+    def _parameters_of(self, rows: list[Any]) -> list[Any]:
+        """The parameters of the invariant form with a matrix."""
+        d, field = self.split.dimension, field_of_values([x for row in rows for x in row])
+        form = field.matrix(rows, (d, d)).reshape(d * d, 1)
+        basis = field.matrix([f.reshape(1, d * d).to_rows()[0] for f in self.basis], (self.dimension, d * d))
+        try:
+            return [row[0] for row in basis.T.solve(form).to_rows()]
+        except SingularError:
+            raise InputError("the matrix is not that of an invariant symmetric form") from None
 
     def generic(self, *, first: ScalarLike | None = None) -> InvariantMetric:
         """The metric with the parameters x1, ..., xr themselves, as rational functions over QQ.
@@ -247,7 +260,10 @@ class InvariantMetric:
         """The inverse of the matrix, shape (d, d)."""
         d = len(self._matrix)
         if isinstance(self.field, ExactField):
-            return np.asarray(self.field.matrix(self._matrix, (d, d)).inverse())
+            form = self.field.matrix(self._matrix, (d, d))
+            if form.rank() < d:
+                raise SingularError(f"the form with the parameters {displayed(self.parameters)} is degenerate")
+            return np.asarray(form.inverse())
         # the inverse is an invariant form on the dual: r linear equations for its parameters, independent at one point
         dual, ring = self.metrics._dual, self.metrics.split.field
         if len(dual) < self.metrics.dimension:

@@ -153,7 +153,7 @@ def among(some: BooleanArray, tail: str) -> str:
 # Initial points and time spans as users give them, read as float64 or numpy.longdouble.
 
 REMEDIES = {  # what to do about initial points of a kind that is refused
-    "c": "give real and imaginary parts as 2 N real coordinates of the representation on them",
+    "c": "on C^n give z.view(float), the coordinates (Re z_1, Im z_1, ...); .view(complex) reads points back",
     "f": "y0.astype(numpy.float64) computes in double precision",
     "b": "y0.astype(float) computes with 0 and 1",
 }

@@ -464,8 +464,9 @@ class StructureConstants(Immutable):
         for i in range(k):
             wide[i * k : (i + 1) * k, i] = values
         wide[k * k :] = brackets.transpose(1, 0, 2)
-        wide = wide[:, wide.any(axis=0)]
-        return _from_floats(rows.field, wide, wide.shape, 1)
+        flat = wide.reshape(k * k + n, k * n)
+        flat = flat[:, flat.any(axis=0)]
+        return _from_floats(rows.field, flat, flat.shape, 1)
 
     def first_nonzero(self, left: Matrix, right: Matrix, out: Matrix) -> tuple[int, int] | None:
         """The first (a, b) with [left_a, right_b] @ out not zero, or None, which proves that all vanish.

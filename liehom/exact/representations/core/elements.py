@@ -69,7 +69,8 @@ def coordinates_of(
             index,
             residual,
             f"{what} is not in the Lie algebra of the {rho.algebra.dimension} matrices rho(e_i): the nearest element "
-            f"differs from it by {residual:.3g} of its norm",
+            f"differs from it by {residual:.3g} of its norm"
+            + ("; hermitian=True takes i times the matrix" if rho.complex_size and not hermitian else ""),
         ) from None
 
 
