@@ -15,7 +15,7 @@ def pati_salam() -> tuple[str, str, Fraction]:
 
 
 def running() -> list[Fraction]:
-    """One-loop coefficients 11/3 C - 2/3 T(Weyl) - 1/3 T(complex scalars) of SU(3) and SU(2), from the 5bar + 10 of SU(5)."""
+    """One-loop coefficients 11/3 C - 2/3 T(Weyl) - 1/3 T(complex scalars) of SU(3) and SU(2), from 5bar + 10."""
     rule = lh.branching_rule("su(5)", "su(3)+su(2)+u(1)", charges="-1/6")
     higgs = (1, 2)
     b = []

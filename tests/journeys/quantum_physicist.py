@@ -10,7 +10,7 @@ import liehom as lh
 
 
 def driven_end() -> tuple[int, str, int]:
-    """A Heisenberg chain of three qubits whose first one is driven: dimension and name, and the dimension by matrices."""
+    """A Heisenberg chain of three qubits, the first one driven: dimension and name, and dimension by matrices."""
     words = ["XXI + YYI + ZZI", "IXX + IYY + IZZ", "XII", "ZII"]
     algebra = lh.pauli.closure(words)
     letters = {"I": np.eye(2), "X": [[0, 1], [1, 0]], "Y": [[0, -1j], [1j, 0]], "Z": [[1, 0], [0, -1]]}
@@ -30,7 +30,7 @@ def driven_end() -> tuple[int, str, int]:
 
 
 def transmon() -> tuple[list[float], float]:
-    """Leakage of a pi pulse into the third level without and with a DRAG term, and the error of a run beside solve_ivp."""
+    """Leakage of a pi pulse into the third level without and with a DRAG term; an error beside solve_ivp."""
     low = np.diag([1, np.sqrt(2)], 1)
     number = np.diag([0, 1, 2])
     matrices = [low + low.T, -1j * low + 1j * low.T, number @ (number - np.eye(3))]
@@ -68,7 +68,7 @@ def transmon() -> tuple[list[float], float]:
 
 
 def echo() -> tuple[float, float, float]:
-    """The mean signal of 200 detuned spins after a free decay and after an echo, and the error beside products of expm."""
+    """The mean signal of 200 detuned spins after a free decay and after an echo; the error beside expm."""
     detunings = np.random.default_rng(1).normal(0.0, 1.0, 200)
 
     def psi(m: np.ndarray, t: np.ndarray, args: dict[str, np.ndarray]) -> np.ndarray:
