@@ -144,3 +144,10 @@
 
 // printing opens what is folded
 window.addEventListener("beforeprint", () => document.querySelectorAll("details").forEach((part) => (part.open = true)));
+
+// A link to a section unfolds it.
+(() => {
+  const unfold = () => document.querySelector(`${location.hash || "none"} > details`)?.setAttribute("open", "");
+  addEventListener("hashchange", unfold);
+  unfold();
+})();

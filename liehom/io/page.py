@@ -63,9 +63,10 @@ def items(lines: Iterable[object]) -> str:
     return f"<ul>{''.join(f'<li>{text(line)}</li>' for line in lines)}</ul>"
 
 
-def section(name: str, heading: str, *content: str) -> str:
-    """A section with a heading that links point to as ``#name``."""
-    return f'<section id="{text(name)}"><h2>{text(heading)}</h2>{"".join(content)}</section>'
+def section(name: str, heading: str, *content: str, unfolded: bool = False) -> str:
+    """A section that unfolds, with a heading that links point to as ``#name``."""
+    start = f'<section id="{text(name)}"><details class="part"{" open" if unfolded else ""}>'
+    return f"{start}<summary><h2>{text(heading)}</h2></summary><div>{''.join(content)}</div></details></section>"
 
 
 def details(summary: str, *content: str) -> str:
@@ -97,15 +98,15 @@ def number(matrix: Matrix, value: Scalar) -> str:
 
 
 def matrix_table(matrix: Matrix, label: str) -> str:
-    """A matrix with its name before it; of a large one the first rows and columns, and a line that says so."""
-    rows, columns = min(matrix.nrows, MOST_ROWS), min(matrix.ncols, MOST_ROWS)
-    more = "<td>...</td>" if columns < matrix.ncols else ""
-    body = [f"<tr>{''.join(_cell(matrix, i, j) for j in range(columns))}{more}</tr>" for i in range(rows)]
-    body += [f"<tr>{'<td>...</td>' * (columns + bool(more))}</tr>"] * (rows < matrix.nrows)
-    note = f"{label} is {matrix.nrows} x {matrix.ncols}; the first {rows} rows and {columns} columns are shown."
-    grid = f'<table class="matrix" aria-label="{text(label)}">{"".join(body)}</table>' if body else "empty"
-    named = f'<div class="box equation"><span>{text(label)} =</span>{grid}</div>'
-    return named + (paragraph(note, "note") if (rows, columns) != matrix.shape else "")
+    """A matrix with its name before it; of a large one the first entries that are not 0."""
+    if max(matrix.shape) > MOST_ROWS:
+        places = [(i, j) for i, row in enumerate(matrix) for j, x in enumerate(row) if x != 0]
+        entries = "; ".join(f"({i}, {j}): {number(matrix, matrix[i, j])}" for i, j in places[:MOST_ROWS])
+        words = f"{label} is {matrix.nrows} x {matrix.ncols} with {len(places)} entries that are not 0"
+        return paragraph(f"{words}{', first' if len(places) > MOST_ROWS else ''}: {entries}", "note")
+    rows = [f"<tr>{''.join(_cell(matrix, i, j) for j in range(matrix.ncols))}</tr>" for i in range(matrix.nrows)]
+    grid = f'<table class="matrix" aria-label="{text(label)}">{"".join(rows)}</table>' if rows else "empty"
+    return f'<div class="box equation"><span>{text(label)} =</span>{grid}</div>'
 
 
 def _cell(matrix: Matrix, i: int, j: int) -> str:
@@ -519,7 +520,8 @@ VERDICTS = (Full, NotFull, NumericallyFull, NumericallyNotFull, NumericallyUndec
 MOST_BRACKETS = 60
 MOST_MATRICES = 12
 MAX_CURVED = 8  # Largest dimension of G/H whose geometry a page describes
-MAX_DESCRIBED = 60  # Largest dimension of an algebra whose structure a page describes: larger ones can take minutes
+MAX_DESCRIBED = 250  # Largest dimension of an algebra whose structure a page describes
+MAX_SEARCHED = 60  # Largest dim g for which a page says where (6.3) fails: larger ones can take minutes
 MAX_FILE = 1_000_000  # Bytes of a file that a page contains
 
 MEANING = (
@@ -620,10 +622,12 @@ SECTIONS = {
     "brackets": "Brackets",
     "files": "Check it yourself",
 }
+UNFOLDED = ("proof", "failures")
+"""What the page shows of itself; the rest unfolds."""
 
 
 def _section(name: str, *content: str) -> str:
-    return section(name, SECTIONS[name], *content)
+    return section(name, SECTIONS[name], *content, unfolded=name in UNFOLDED)
 
 
 # -- verdict -------------------------------------------------------------------------------------------------
@@ -660,8 +664,8 @@ def _failures(verdict: Verdict) -> str:
         return _section("failures", paragraph("The cone on which (6.3) fails is computed for exact pairs only."))
     if isinstance(verdict, Full):
         return _section("failures", paragraph("Nowhere: (6.3) holds for every ψ outside h, since the pair is full."))
-    if pair.algebra.dimension > MAX_DESCRIBED:
-        words = f"Not computed here, because dim g is above {MAX_DESCRIBED}; call verdict.where_it_fails() for it."
+    if pair.algebra.dimension > MAX_SEARCHED:
+        words = f"Not computed here, because dim g is above {MAX_SEARCHED}; call verdict.where_it_fails() for it."
         return _section("failures", paragraph(words))
     try:
         report = failure_report(pair, verdict.certificate)
