@@ -151,7 +151,9 @@ class Found(Exception):
     """A graph that was traced."""
 
 
-@pytest.mark.parametrize("make", [projective_plane, grassmannian, symmetric4, underwater_body], ids=lambda f: f.__name__)
+@pytest.mark.parametrize(
+    "make", [projective_plane, grassmannian, symmetric4, underwater_body], ids=lambda f: f.__name__
+)
 def test_orders_that_tolerances_ask_for_are_compiled_without_loops(
     make: Callable[[], Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
