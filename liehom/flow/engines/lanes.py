@@ -86,8 +86,8 @@ def with_guard(graph: StepGraph, action: Action, dimension: int) -> StepGraph:
 def _has_rank(action: Action, m: Traced, size: Values, dimension: int) -> tuple[Values, Values]:
     """Whether the orbit of a point m with m.m = size is certainly of at least, and at most, dimension d. A map of a
     random R^d to g, followed by the action on the point, is injective; if orbits of larger dimension exist, those of
-    several R^(d + 1) are not: one by a defect that is round-off, and all by one that is round-off if divided by the
-    smallest length before it.
+    several R^(d + 1) are not. Their defect, divided by the smallest length before it, is round-off in all of them, and
+    undivided in one of them.
     """
     rng, tape = np.random.default_rng((0, dimension)), m.tape
     generic = check_point(action.representation, rng.normal(size=(4, m.shape[-1])))

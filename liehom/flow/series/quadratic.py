@@ -56,7 +56,7 @@ def affine_flow(m: Traced, psi: Traced, move: Callable[[Any, Any], Values], orde
     return AffineFlow(_points(x, rows, order, partial(_as_written, x, affine, move)), affine)
 
 
-def _operations(outputs: Sequence[Expr]) -> list[Expr]:
+def _operations(outputs: Iterable[Expr]) -> list[Expr]:
     """Operations in the graph of some numbers."""
     return [x for x in needed(list(outputs)) if x.args]
 
