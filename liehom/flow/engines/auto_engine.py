@@ -96,7 +96,7 @@ class AutoEngine:
     def kind(self, start: Values) -> type[Kernel] | None:
         """The kind of code for initial points (..., N); None as long as numpy makes their steps."""
         *lead, n = np.shape(start)
-        few, size = int(np.prod(lead, dtype=int)) <= FEW, n * self._generators
+        few, size = int(np.prod(lead, dtype=int)) <= FEW and PythonKernel not in self.refused, n * self._generators
 
         def is_paid(what: str, price: tuple[int, float]) -> bool:
             return self.made[what] >= price[0] + price[1] * size

@@ -6,6 +6,7 @@ import os
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
+from functools import reduce
 from itertools import pairwise
 from typing import Any, NamedTuple, TypeVar, final
 
@@ -58,7 +59,7 @@ def block_width(graph: StepGraph, lanes: int) -> int:
 
 GUARD_RTOL = 1e-10  # a squared length above this fraction of the sum of all is certainly not 0
 GUARD_DEFECT = 1e-11  # a length below this fraction of that of the point is round-off
-GUARD_PROJECTIONS = 2  # number of random projections, one of which shows the rank
+GUARD_PROJECTIONS = 3  # number of random projections, one of which shows the rank
 
 
 def with_guard(graph: StepGraph, action: Action, dimension: int) -> StepGraph:
@@ -72,8 +73,8 @@ def with_guard(graph: StepGraph, action: Action, dimension: int) -> StepGraph:
     if dimension == graph.size - 1 and np.array_equal(matrices, -np.swapaxes(matrices, 1, 2)):
         # an orbit that is open in a sphere has a ball of one radius around each of its points: it is the sphere
         certain, bounded = size > 0, size < np.inf
-    elif tape.least_loop is not None:  # an elimination is longer than such a step
-        return graph
+    elif tape.least_loop is not None and GUARD_PROJECTIONS * dimension**2 > len(needed(graph.outputs)):
+        return graph  # the check would be longer than the step
     else:
         certain, bounded = _has_rank(action, m, size, dimension)
     certain = certain & bounded
@@ -85,7 +86,8 @@ def with_guard(graph: StepGraph, action: Action, dimension: int) -> StepGraph:
 def _has_rank(action: Action, m: Traced, size: Values, dimension: int) -> tuple[Values, Values]:
     """Whether the orbit of a point m with m.m = size is certainly of at least, and at most, dimension d. A map of a
     random R^d to g, followed by the action on the point, is injective; if orbits of larger dimension exist, those of
-    several R^(d + 1) are not.
+    several R^(d + 1) are not. Their defect, divided by the smallest length before it, is round-off in all of them, and
+    undivided in one of them.
     """
     rng, tape = np.random.default_rng((0, dimension)), m.tape
     generic = check_point(action.representation, rng.normal(size=(4, m.shape[-1])))
@@ -93,12 +95,17 @@ def _has_rank(action: Action, m: Traced, size: Values, dimension: int) -> tuple[
     point: Any = m
     frame: Any = action.infinitesimal.right(point)
     certain: Any = Traced(tape, tape.false)
+    small: Any = certain
     bounded: Any = Traced(tape, tape.true)
     for _ in range(GUARD_PROJECTIONS):
         lengths = _orthogonal_lengths(frame @ rng.normal(size=(action.dimension, dimension + low)))
         certain = certain | _are_certain(lengths[:dimension], size)
-        bounded = bounded & (sum(lengths[dimension:]) <= GUARD_DEFECT**2 * size) if low else bounded
-    return certain, bounded
+        if low:
+            *longer, defect = lengths
+            round_off, total = GUARD_DEFECT**2 * size, sum(longer)
+            small = small | (defect <= round_off)
+            bounded = bounded & (defect * reduce(np.minimum, longer) <= round_off * total)
+    return certain, bounded & small if low else bounded
 
 
 def _orthogonal_lengths(matrix: Values) -> list[Any]:

@@ -44,15 +44,21 @@ def affine_flow(m: Traced, psi: Traced, move: Callable[[Any, Any], Values], orde
     if rows is None or affine is None or any(len(e) > 1 for row in affine for e in row):
         return None
     products = {e for row in rows for e in row if len(e) == 2}
-    written = sum(x.op == "mul" and not x.args[0].constant for x in needed(list(vector.entries)))
-    pairs = (order - 1) * (order - 2) / 2
-    by_products = pairs * sum(0.5 if a == b else 1.0 for a, b in products)
-    by_products += 1.5 * (order - 2) * sum(len(e) == 2 for row in rows for e in row)  # sums, not in pairs
-    as_written = pairs * written + (order - 2) * sum(len(e) == 1 for row in affine for e in row)
+    # operations that differ, for each pair of coefficients and for each order
+    moved = len(_operations(vector.entries)) - len(_operations(psi.entries)) + len(m)
+    pairs, orders = (order - 1) * (order - 2) / 2, 2 * (order - 2)
+    by_products = pairs * sum(1 + (a != b) for a, b in products)
+    by_products += orders * sum(len(e) == 2 for row in rows for e in row)
+    as_written = pairs * moved + orders * sum(len(e) == 1 for row in affine for e in row)
     x = [list(m.entries)]
     if by_products <= as_written:
         return AffineFlow(_points(x, rows, order, partial(_by_products, x, rows, products)), affine)
     return AffineFlow(_points(x, rows, order, partial(_as_written, x, affine, move)), affine)
+
+
+def _operations(outputs: Iterable[Expr]) -> list[Expr]:
+    """Operations in the graph of some numbers."""
+    return [x for x in needed(list(outputs)) if x.args]
 
 
 def _quadratics(outputs: Sequence[Expr], size: int) -> list[Quadratic] | None:

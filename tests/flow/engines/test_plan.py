@@ -12,6 +12,7 @@ from liehom.base.errors import InputError
 from liehom.flow.engines import llvm_engine, plan
 from liehom.flow.engines.llvm_engine import LlvmEngine
 from liehom.flow.steps import Conserving
+from tests.benchmarks.integration_problems import grassmannian, projective_plane, symmetric4, underwater_body
 from tests.flow.engines.test_compiled import BODY, START, sphere
 
 pytest.importorskip("llvmlite")
@@ -118,6 +119,52 @@ def test_points_on_smaller_orbits_are_looked_at_closely() -> None:
     assert made(SPAN, small, dt=0.1).report.orbit_dimension == 2 and engine.solved == 2
     made(SPAN, np.array([1.0, 0.1, 0.3, 2.0, 0.3, 4.0]), dt=0.1)
     assert engine.solved == 2
+
+
+RHO4 = lh.sym_conjugation(4)
+LINEAR4 = 0.2 * np.random.default_rng(83).normal(size=(RHO4.algebra.dimension, RHO4.size))
+
+
+def planes(count: int) -> Any:
+    """Projectors (count, 10) on random planes of R^4, points of orbits of dimension 4."""
+    q = np.linalg.qr(np.random.default_rng(9).normal(size=(count, 4, 4)))[0]
+    return lh.instances.SymmetricMatrices(4).to_vector(q[..., :2] @ q[..., :2].swapaxes(1, 2))
+
+
+@pytest.mark.parametrize("unrolled", [28_000, 1])
+def test_all_points_of_a_grassmannian_and_no_others_are_made_again(
+    unrolled: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(llvm_engine, "UNROLLED_OPERATIONS", unrolled)
+    starts = planes(3000)
+    made, engine = propagator(lh.GeneratorField(RHO4, lambda m: m @ LINEAR4.T), lh.Taylor(4))
+    for _ in range(2):
+        made((0.0, 0.1), starts, dt=0.1)
+    assert engine.solved == 1
+    made((0.0, 0.1), starts[0], dt=0.1)
+    off = np.random.default_rng(3).normal(size=(30, 10))
+    for x in starts[:30] + 1e-8 * off:
+        assert engine.again((0.0, 0.1), x, {"dt": 0.1}) is None
+
+
+class Found(Exception):
+    """A graph that was traced."""
+
+
+@pytest.mark.parametrize(
+    "make", [projective_plane, grassmannian, symmetric4, underwater_body], ids=lambda f: f.__name__
+)
+def test_orders_that_tolerances_ask_for_are_compiled_without_loops(
+    make: Callable[[], Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def stop(graph: Any, *_: Any) -> None:
+        raise Found(graph)
+
+    monkeypatch.setattr(llvm_engine, "with_guard", stop)
+    problem = make()
+    with pytest.raises(Found) as found:
+        lh.integrate(problem.field, (0.0, 1.0), problem.starts(1)[0], rtol=1e-13, atol=1e-13, engine="llvm")
+    assert found.value.args[0].point[0].tape.least_loop is None
 
 
 @pytest.mark.parametrize("options", [{}, {"rtol": 1e-9}, {"rtol": 1e-4, "atol": 1e-7}], ids=str)

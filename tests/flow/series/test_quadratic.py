@@ -1,12 +1,13 @@
 """The expansion of a traced flow whose generator has degree 1, beside the general one."""
 
+from functools import partial
 from typing import Any
 
 import numpy as np
 import pytest
 
 import liehom as lh
-from liehom.flow.series.quadratic import AffineFlow, affine_flow
+from liehom.flow.series.quadratic import AffineFlow, _as_written, _by_products, _points, _quadratics, affine_flow
 from liehom.flow.steps.expansion import flow_series
 from liehom.flow.tracing.array import Traced
 from liehom.flow.tracing.graph import Tape, needed
@@ -17,6 +18,7 @@ SPACES = {
     "body": (lh.adjoint(lh.so(3)), np.diag([1.0, 0.5, 0.25]), np.zeros(3)),
     "S^3": (lh.defining(lh.so(4)), RNG.normal(size=(6, 4)), RNG.normal(size=6)),
     "coadjoint SE(3)": (lh.coadjoint(lh.euclidean(3)), RNG.normal(size=(6, 6)), RNG.normal(size=6)),
+    "adjoint SU(3)": (lh.adjoint(lh.su(3)), RNG.normal(size=(8, 8)), RNG.normal(size=8)),
     "squares": (lh.Representation(lh.abelian(2), [[[1, 0], [0, 0]], [[0, 0], [0, 1]]]), np.ones((2, 2)), np.ones(2)),
     "constant": (lh.adjoint(lh.so(3)), np.zeros((3, 3)), np.array([1.0, -2.0, 0.5])),
 }  # fmt: skip
@@ -57,6 +59,29 @@ def test_the_body_needs_half_of_the_products() -> None:
         outputs = [e for k in range(1, 9) for e in some.point(k).entries]  # type: ignore[union-attr]
         counts.append(sum(x.op == "mul" and not x.args[0].constant for x in needed(outputs)))
     assert counts[0] <= 0.6 * counts[1]
+
+
+@pytest.mark.parametrize("order", [8, 10, 16, 20])
+@pytest.mark.parametrize("name", ["body", "S^3", "coadjoint SE(3)", "adjoint SU(3)"])
+def test_the_shorter_form_is_taken(name: str, order: int) -> None:
+    def operations(points: Any) -> int:
+        return sum(bool(x.args) for x in needed([e for row in points for e in row]))
+
+    flow, field, _ = traced(name, order)
+    m = Traced.inputs(Tape(), 0, field.representation.size)
+    psi = Traced(m.tape, field.psi(m))
+    vector: Any = field.infinitesimal(psi, m)
+    rows, affine = _quadratics(list(vector.entries), len(m)), _quadratics(list(psi.entries), len(m))
+    assert rows is not None and affine is not None
+    counts = []
+    for form, given in (
+        (_by_products, (rows, {e for row in rows for e in row if len(e) == 2})),
+        (_as_written, (affine, field.infinitesimal)),
+    ):
+        x = [list(m.entries)]
+        counts.append(operations(_points(x, rows, order, partial(form, x, *given))))  # type: ignore[arg-type]
+    taken = operations([flow.point(k).entries for k in range(order + 1)])
+    assert taken in counts and taken <= 1.02 * min(counts)
 
 
 def test_numbers_of_args_are_coefficients() -> None:
