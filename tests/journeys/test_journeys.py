@@ -1,8 +1,12 @@
 """Each job of a journey answers what independent programs, tables or hand calculation answer."""
 
+import runpy
 from fractions import Fraction
+from pathlib import Path
 
-from tests.journeys import engineer, geometer, particle_physicist, quantum_physicist
+import pytest
+
+from tests.journeys import engineer, geometer, lecturer, particle_physicist, quantum_physicist, researcher
 
 
 def test_an_arm_moves_as_products_of_matrix_exponentials_do() -> None:
@@ -58,3 +62,35 @@ def test_the_standard_model_runs_as_in_the_textbooks() -> None:
 def test_cubic_invariants_of_grand_unification() -> None:
     cubic, ten, dimensions = particle_physicist.yukawas()
     assert (cubic, ten) == (1, 1) and sorted(map(int, dimensions)) == [10, 120, 126]
+
+
+def test_euler_has_order_4_on_cubes_of_linear_forms_and_order_1_on_generic_cubics() -> None:
+    researcher.binary_cubics()
+
+
+def test_a_tableau_and_two_methods_of_the_researcher_have_their_orders() -> None:
+    researcher.own_methods()
+
+
+def test_the_energy_of_two_spins_is_bounded_or_drifts_as_the_step_says() -> None:
+    researcher.two_spins()
+
+
+def test_a_sheet_on_sl3_agrees_with_characters_by_hand(tmp_path: Path) -> None:
+    pytest.importorskip("matplotlib")
+    lecturer.sheet_on_sl3(tmp_path)
+
+
+def test_a_body_flips_as_elliptic_integrals_say(tmp_path: Path) -> None:
+    pytest.importorskip("matplotlib")
+    lecturer.rigid_body_slide(tmp_path)
+
+
+def test_real_algebras_of_dimension_three_are_found_in_ugly_bases() -> None:
+    lecturer.three_dimensional()
+
+
+@pytest.mark.parametrize("peer", ["researcher_peer", "lecturer_peer"])
+def test_the_way_of_the_peers_runs(peer: str) -> None:
+    pytest.importorskip("matplotlib")
+    runpy.run_path(str(Path(__file__).with_name(f"{peer}.py")), run_name="__main__")

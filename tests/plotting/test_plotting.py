@@ -312,6 +312,13 @@ def test_plot_trajectory_raises_for_other_objects() -> None:
         plot_trajectory(np.zeros((3, 4)))  # type: ignore[arg-type]
 
 
+def test_list_of_solutions_is_sent_to_one_call_of_integrate() -> None:
+    field = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m: -m / [1.0, 2.0, 3.0])
+    solutions = [lh.integrate(field, (0, 1), start, dt=0.5) for start in ([1, 0, 0], [0, 1, 0])]
+    with pytest.raises(InputError, match=r"initial points \(k, N\) in one call"):
+        lh.plotting.plot_trajectory(solutions)  # type: ignore[arg-type]
+
+
 # -- files and settings ----------------------------------------------------------------------------------
 @pytest.mark.parametrize("suffix", [".png", ".pdf", ".svg"])
 def test_equal_plots_are_equal_files(suffix: str, tmp_path: Path) -> None:

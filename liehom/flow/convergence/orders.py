@@ -325,7 +325,10 @@ def observed_order(
     problems = [EnsembleProblem(field, (first, last), start, {}, {**options, "dt": h}) for h in sizes]
     runs = all_solved(problems, executor, store, retries)
     if all(run.status == -1 for run in runs):
-        raise ConvergenceError(f"no step size came through; the smallest, {sizes[-1]}: {runs[-1].message}")
+        raise ConvergenceError(
+            f"no step size came through to t = {last:.6g}; end t_span before the time below, or change the initial point. "
+            f"The smallest, {sizes[-1]}: {runs[-1].message}"
+        )
     accuracy = float(np.max(exact.accuracy(last)))
     orbit = not (field.time_dependent and clock == "nominal")
     errors = [(NAN, NAN) if run.status == -1 else errors_of(exact, end_points(run), last, orbit=orbit) for run in runs]

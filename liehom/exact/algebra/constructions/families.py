@@ -191,18 +191,19 @@ def bianchi(kind: str, a: ScalarLike | None = None) -> LieAlgebra:
     -----
     [e2, e3] = n1 e1, [e3, e1] = n2 e2 - a e3, [e1, e2] = n3 e3 + a e2 with
 
-    =====  ============  ===  ==============================
-    I      (0, 0, 0)     0    abelian
-    II     (1, 0, 0)     0    heisenberg(1)
-    III    (0, 1, -1)    1    R + aff(1)
-    IV     (0, 0, 1)     1
-    V      (0, 0, 0)     1    acts on hyperbolic space
-    VI     (0, 1, -1)    a    a = 0: iso(1, 1)
-    VII    (0, 1, 1)     a    a = 0: e(2)
-    VIII   (1, 1, -1)    0    sl(2)
-    IX     (1, 1, 1)     0    so(3)
-    =====  ============  ===  ==============================
+    =====  ============  ===  =========  ==============================
+    I      (0, 0, 0)     0    R^3        abelian
+    II     (1, 0, 0)     0    A3,1       heisenberg(1)
+    III    (0, 1, -1)    1    A2,1+R     R + aff(1)
+    IV     (0, 0, 1)     1    A3,2
+    V      (0, 0, 0)     1    A3,3       acts on hyperbolic space
+    VI     (0, 1, -1)    a    A3,5(b)    a = 0: A3,4 = iso(1, 1)
+    VII    (0, 1, 1)     a    A3,7(a)    a = 0: A3,6 = e(2)
+    VIII   (1, 1, -1)    0    A3,8       sl(2)
+    IX     (1, 1, 1)     0    A3,9       so(3)
+    =====  ============  ===  =========  ==============================
 
+    The fourth column is the name that `LieAlgebra.identify` gives, with b = (a - 1) / (a + 1) for type VI.
     I, II, VI with a = 0, VII with a = 0, VIII and IX are unimodular.
 
     Examples

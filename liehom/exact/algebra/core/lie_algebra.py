@@ -474,6 +474,20 @@ class LieAlgebra(Displayed, Immutable):
         """
         return self.radical().dimension == self.dimension
 
+    def is_unimodular(self) -> bool:
+        """Whether tr ad x = 0 for all x; equivalently, a connected group of the algebra has a two-sided Haar measure.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> lh.euclidean(2).is_unimodular(), lh.bianchi("V").is_unimodular()
+        (True, False)
+        """
+        identity = self.field.identity(self.dimension)
+        adjoint = (self.ad(identity.select([i])) for i in range(self.dimension))
+        # a - (a - t) carries the error of a over floats, where the number tr a / n alone has none
+        return all((a - (a - identity.scale(a.trace() / a.nrows))).is_zero() for a in adjoint)
+
     def is_semisimple(self) -> bool:
         """Whether the Killing form is nondegenerate (Cartan's criterion); the zero algebra is semisimple.
 

@@ -1,6 +1,7 @@
 """Families of Lie algebras, each against its own claims."""
 
 import itertools
+import random
 from collections.abc import Callable
 from typing import Any
 
@@ -13,6 +14,7 @@ from liehom.base.errors import CatalogError, DependentRowsError, InputError, Lim
 from liehom.exact.algebra.constructions.classical import parabolic_subalgebra, so_form, so_star, sp_form
 from liehom.exact.algebra.constructions.families import almost_abelian, bianchi, free_nilpotent, oscillator, poincare
 from liehom.exact.algebra.core.jacobi import prove_jacobi
+from liehom.testing import random_unimodular
 from tests.sampling import examples
 
 Build = Callable[[], lh.LieAlgebra]
@@ -261,6 +263,22 @@ def test_unimodular_bianchi_types() -> None:
         if all(bianchi(kind).ad([int(i == j) for j in range(3)]).trace() == 0 for i in range(3))
     }
     assert unimodular == {"I", "II", "VI", "VII", "VIII", "IX"}
+
+
+def test_is_unimodular_agrees_with_cohomology_in_the_top_degree() -> None:
+    algebras = [bianchi(kind) for kind in ["I", "II", "III", "IV", "V", "VI", "VII", "VIII", "IX"]]
+    algebras += [
+        bianchi("VI", "1/2"),
+        lh.gl(2),
+        lh.catalog.algebra("aff(2)"),
+        lh.heisenberg(2),
+        lh.catalog.algebra("upper(2)"),
+        lh.abelian(0),
+    ]
+    for g in algebras:
+        assert g.is_unimodular() == (g.cohomology(g.dimension).dimension == 1), g
+        ugly = g.change_of_basis(random_unimodular(g.dimension, random.Random(1)))
+        assert ugly.is_unimodular() == ugly.over(lh.RR).is_unimodular() == g.is_unimodular(), g
 
 
 # -- free nilpotent ------------------------------------------------------------------------------------------

@@ -136,3 +136,48 @@ def test_a_subalgebra_between_h_and_g_excludes_full(d: int) -> None:
 
 def test_maximal_does_not_imply_full() -> None:
     assert not lh.decide_fullness(lh.pair("so(3,1)/so(2,1)")).full
+
+
+def expanded(template: str, d: int) -> str:
+    """The name of a row from one with d, m = d/2 and n = d/4."""
+    size = {"d": d, "m": d // 2, "n": d // 4}
+    return re.sub(r"(?<=\()([dmn])(\+1)?(?=[,)])", lambda x: str(size[x[1]] + bool(x[2])), template)
+
+
+def test_the_concordance_names_every_row_once() -> None:
+    templates = [name for line in table("| rows | [Tits54]") for name in re.findall("`([^`]+)`", line[0])]
+    used = Counter(
+        (name, d, template)
+        for d in range(33)
+        for name in {row.name for row in library_rows(d)}
+        for template in templates
+        if expanded(template, d) == name and (template != "affine(so(d))" or d > 2)
+    )
+    assert {(name, d) for name, d, _ in used} == {(row.name, d) for d in range(33) for row in library_rows(d)}
+    assert len(used) == sum(len(library_rows(d)) for d in range(33))
+    assert {template for *_, template in used} == set(templates)
+
+
+def test_the_concordance_gives_each_source_the_rows_of_its_scope() -> None:
+    scopes = {name: line[1:] for line in table("| rows | [Tits54]") for name in re.findall("`([^`]+)`", line[0])}
+    compact = {
+        "so(2)",
+        "so(d)",
+        "su(m)",
+        "su(m)+u(1)",
+        "sp(n)",
+        "sp(n)+u(1)",
+        "sp(n)+sp(1)",
+        "g2",
+        "spin(7)",
+        "spin(9)",
+    }
+    for name, (isotropic, spheres, two_transitive, kernel) in scopes.items():
+        inner = name[len("affine(") : -1] if name.startswith("affine") else ""
+        parabolic = "/P" in name
+        assert (spheres != "–") == (inner in compact), name
+        assert (kernel != "–") == parabolic, name
+        affine = bool(inner) and inner not in compact | {"spiral(c,1)"}
+        assert (two_transitive != "–") == (parabolic or affine), name
+        small = name in {"0/0", "R/0", "aff(1)/R"}
+        assert (isotropic == "list") == (inner in compact or not (inner or parabolic or small)), name
