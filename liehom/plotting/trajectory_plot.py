@@ -73,9 +73,10 @@ def real_numbers(value: npt.ArrayLike, what: str) -> Array:
 def steps_of(solution: Solution) -> Curves:
     """The points of the steps of the first trajectories."""
     if not isinstance(solution, Solution):
-        several = isinstance(solution, list | tuple)
-        remedy = "; several trajectories are one solution of initial points (k, N) in one call of integrate" * several
-        raise InputError(f"expected a solution as liehom.integrate returns it, got {displayed(solution)}{remedy}")
+        raise InputError(
+            f"expected a solution as liehom.integrate returns it, got {displayed(solution)}"
+            + "; for several trajectories give integrate initial points (k, N)" * isinstance(solution, list | tuple)
+        )
     y = np.asarray(solution.y, dtype=float)
     if not y.size:
         raise InputError("the solution has no point to draw: its ensemble or its t_eval is empty")

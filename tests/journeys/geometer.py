@@ -41,13 +41,8 @@ def special_lagrangians() -> tuple[bool, str, str, str]:
     )
 
 
+JOBS = (wolf_space, nilmanifold, special_lagrangians)
+
 if __name__ == "__main__":
-    symmetric, kinds, scalars, float_check = wolf_space()
-    assert (symmetric, kinds, float_check) == ("True, 1 metric", 2, True)
-    print(f"G2/SO(4) symmetric: {symmetric}; S^3 x S^3: {kinds} kinds of Einstein metrics")
-    name, ricci, betti = nilmanifold()
-    assert name == "A4,2(-2)" and ricci == ["-1/2", "-1/2", "1/2"] and betti == (1, 2, 2, 1)
-    print(f"{name}; Heisenberg group: Ricci curvature {', '.join(ricci)}, Betti numbers {betti}")
-    is_symmetric, constant, holonomy, verdict = special_lagrangians()
-    assert is_symmetric and holonomy == "so(3)" and verdict.startswith("not full")
-    print(f"SU(3)/SO(3): Einstein constant {constant}, holonomy {holonomy}, {verdict}")
+    for job in JOBS:
+        print(f"{job.__name__}: {job()}")

@@ -41,11 +41,8 @@ def yukawas() -> tuple[int, int, list[str]]:
     return cubic, ten, [str(lh.weyl_dimension("D5", weight)) for weight in square]
 
 
+JOBS = (pati_salam, running, yukawas)
+
 if __name__ == "__main__":
-    assert pati_salam() == ("(4,1,2) + (4bar,2,1)", "10_-1 + 5bar_3 + 1_-5", Fraction(0))
-    print("16 =", *pati_salam()[:2], sep=" | ")
-    assert running() == [Fraction(7), Fraction(19, 6)]
-    print("coefficients of SU(3) and SU(2):", *running())
-    cubic, ten, dimensions = yukawas()
-    assert (cubic, ten) == (1, 1) and sorted(map(int, dimensions)) == [10, 120, 126]
-    print(f"invariants in 27^3: {cubic}, in 16 16 10: {ten}; 16 x 16 = {' + '.join(dimensions)}")
+    for job in JOBS:
+        print(f"{job.__name__}: {job()}")

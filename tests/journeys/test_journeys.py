@@ -1,22 +1,96 @@
-"""Every script of this folder runs; each asserts its own numbers. A peer that is not installed is skipped."""
+"""Each job of a journey answers what independent programs, tables or hand calculation answer."""
 
-import os
 import runpy
+from fractions import Fraction
 from pathlib import Path
 
 import pytest
 
-HERE = Path(__file__).parent
-SCRIPTS = sorted(path.name for path in HERE.glob("*.py") if not path.name.startswith("test_"))
-OPTIONAL = {"jax", "jaxlie", "diffrax", "pennylane"}
+from tests.journeys import engineer, geometer, lecturer, particle_physicist, quantum_physicist, researcher
 
 
-@pytest.mark.parametrize("script", SCRIPTS)
-def test_journey_runs_to_its_end(script: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    text = (HERE / script).read_text(encoding="utf-8")
-    for package in sorted(OPTIONAL):
-        if f"import {package}" in text or f"from {package}" in text:
-            pytest.importorskip(package)
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("sys.argv", [script])
-    runpy.run_path(os.fspath(HERE / script), run_name="__main__")
+def test_an_arm_moves_as_products_of_matrix_exponentials_do() -> None:
+    assert engineer.arm() < 1e-8
+
+
+def test_a_body_tracks_a_turning_target_with_bounded_torque() -> None:
+    errors, beside_scipy = engineer.tracking()
+    assert errors == sorted(errors, reverse=True) and errors[0] < 1e-3 and beside_scipy < 1e-7
+
+
+def test_a_unicycle_is_controllable_and_driving_alone_is_not_a_rotation() -> None:
+    assert engineer.unicycle().split(", ")[0].endswith("controllable")
+
+
+def test_a_driven_end_controls_a_heisenberg_chain() -> None:
+    assert quantum_physicist.driven_end() == (63, "su(8)", 63)
+
+
+def test_a_drag_term_lowers_the_leakage() -> None:
+    (without, with_term), beside_scipy = quantum_physicist.transmon()
+    assert with_term < without / 4 and beside_scipy < 1e-7
+
+
+def test_an_echo_refocuses_detuned_spins() -> None:
+    free, echo, beside_expm = quantum_physicist.echo()
+    assert free < 0.2 and echo > 0.99 and beside_expm < 1e-6
+
+
+def test_einstein_metrics_of_a_wolf_space_and_of_two_three_spheres() -> None:
+    symmetric, kinds, _, float_check = geometer.wolf_space()
+    assert (symmetric, kinds, float_check) == ("True, 1 metric", 2, True)
+
+
+def test_the_heisenberg_group_has_its_known_curvature() -> None:
+    name, ricci, betti = geometer.nilmanifold()
+    assert name == "A4,2(-2)" and ricci == ["-1/2", "-1/2", "1/2"] and betti == (1, 2, 2, 1)
+
+
+def test_special_lagrangian_planes_are_a_symmetric_space_with_full_holonomy() -> None:
+    symmetric, _, holonomy, verdict = geometer.special_lagrangians()
+    assert symmetric and holonomy == "so(3)" and verdict.startswith("not full")
+
+
+def test_the_16_of_so10_is_a_generation() -> None:
+    assert particle_physicist.pati_salam() == ("(4,1,2) + (4bar,2,1)", "10_-1 + 5bar_3 + 1_-5", Fraction(0))
+
+
+def test_the_standard_model_runs_as_in_the_textbooks() -> None:
+    assert particle_physicist.running() == [Fraction(7), Fraction(19, 6)]
+
+
+def test_cubic_invariants_of_grand_unification() -> None:
+    cubic, ten, dimensions = particle_physicist.yukawas()
+    assert (cubic, ten) == (1, 1) and sorted(map(int, dimensions)) == [10, 120, 126]
+
+
+def test_euler_has_order_4_on_cubes_of_linear_forms_and_order_1_on_generic_cubics() -> None:
+    researcher.binary_cubics()
+
+
+def test_a_tableau_and_two_methods_of_the_researcher_have_their_orders() -> None:
+    researcher.own_methods()
+
+
+def test_the_energy_of_two_spins_is_bounded_or_drifts_as_the_step_says() -> None:
+    researcher.two_spins()
+
+
+def test_a_sheet_on_sl3_agrees_with_characters_by_hand(tmp_path: Path) -> None:
+    pytest.importorskip("matplotlib")
+    lecturer.sheet_on_sl3(tmp_path)
+
+
+def test_a_body_flips_as_elliptic_integrals_say(tmp_path: Path) -> None:
+    pytest.importorskip("matplotlib")
+    lecturer.rigid_body_slide(tmp_path)
+
+
+def test_real_algebras_of_dimension_three_are_found_in_ugly_bases() -> None:
+    lecturer.three_dimensional()
+
+
+@pytest.mark.parametrize("peer", ["researcher_peer", "lecturer_peer"])
+def test_the_way_of_the_peers_runs(peer: str) -> None:
+    pytest.importorskip("matplotlib")
+    runpy.run_path(str(Path(__file__).with_name(f"{peer}.py")), run_name="__main__")

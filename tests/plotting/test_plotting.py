@@ -315,7 +315,7 @@ def test_plot_trajectory_raises_for_other_objects() -> None:
 def test_list_of_solutions_is_sent_to_one_call_of_integrate() -> None:
     field = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m: -m / [1.0, 2.0, 3.0])
     solutions = [lh.integrate(field, (0, 1), start, dt=0.5) for start in ([1, 0, 0], [0, 1, 0])]
-    with pytest.raises(InputError, match=r"initial points \(k, N\) in one call"):
+    with pytest.raises(InputError, match=r"give integrate initial points \(k, N\)"):
         lh.plotting.plot_trajectory(solutions)  # type: ignore[arg-type]
 
 

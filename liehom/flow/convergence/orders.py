@@ -326,8 +326,8 @@ def observed_order(
     runs = all_solved(problems, executor, store, retries)
     if all(run.status == -1 for run in runs):
         raise ConvergenceError(
-            f"no step size came through to t = {last:.6g}; end t_span before the time below, or change the initial "
-            f"point. The smallest, {sizes[-1]}: {runs[-1].message}"
+            f"no step size came through to t = {last:.6g}; end t_span before the time below, or choose another "
+            f"initial point. The smallest, {sizes[-1]}: {runs[-1].message}"
         )
     accuracy = float(np.max(exact.accuracy(last)))
     orbit = not (field.time_dependent and clock == "nominal")

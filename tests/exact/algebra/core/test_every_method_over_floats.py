@@ -72,7 +72,15 @@ ANSWERED: dict[str, Question] = {
     "table": lambda g: g.table.dimension,
     **{
         name: methodcaller(name)
-        for name in ["is_abelian", "is_nilpotent", "is_reductive", "is_semisimple", "is_solvable", "killing_signature"]
+        for name in [
+            "is_abelian",
+            "is_nilpotent",
+            "is_reductive",
+            "is_semisimple",
+            "is_solvable",
+            "is_unimodular",
+            "killing_signature",
+        ]
     },
     **{
         name: lambda g, name=name: getattr(g, name)().dimension
