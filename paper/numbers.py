@@ -24,6 +24,12 @@ def cells(page: str, marker: str) -> list[list[str]]:
     return [[x.strip() for x in line.strip("|").split("|")] for line in block.splitlines() if line.startswith("|")]
 
 
+def said(page: str, pattern: str) -> str:
+    """The number that the text of a page has in a sentence or row, the same each time."""
+    (found,) = set(re.findall(pattern, (ROOT / "docs" / page).read_text(encoding="utf-8"), re.MULTILINE))
+    return str(found)
+
+
 def numbers() -> dict[str, str]:
     """The numbers of the paper, by key."""
     atlas = json.loads((ROOT / "docs/_static/atlas.json").read_text(encoding="utf-8"))
@@ -45,6 +51,9 @@ def numbers() -> dict[str, str]:
     means = [float(row[1]) for row in grid]
     values |= {"questions": str(len(grid)), "gap least": f"{min(means):.1f}", "gap most": f"{max(means):.0f}"}
     theorems = cells("formal.md", "theorems")[2:]
+    values["algebras"] = said("performance-exact.md", r"questions are asked of (\d+) algebras")
+    values["problems many"] = said("performance.md", r"10,000 trajectories on \d+ of (\d+) problems")
+    values["call"] = said("performance.md", r"^\| fixed step size;.*\| (\d+ to \d+) \|$")
     lines = sum(len(file.read_text().splitlines()) for file in (ROOT / "docs/formal/theories").glob("*.v"))
     return values | {"theorems": str(len(theorems)), "coq lines": f"{lines:,}"}
 

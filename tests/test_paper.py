@@ -14,7 +14,7 @@ def test_numbers_of_the_paper_are_those_of_their_sources() -> None:
 
 def test_each_number_of_the_paper_names_its_source() -> None:
     text = KEYED.sub("", BODY)
-    for other in (r"\$[^$]+\$", r"`[^`]+`", r"\[[-@].+?\]", r"in 2002", r"\(.+?\.pdf\)"):
+    for other in (r"\$[^$]+\$", r"`[^`]+`", r"\[[-@].+?\]", r"in 2002", r"\(\w+\.pdf\)"):
         text = re.sub(other, "", text, flags=re.DOTALL)
     assert not re.findall(r".*\d.*", text.replace("RK4", "").replace("DOP853", ""))
 
