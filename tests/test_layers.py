@@ -66,7 +66,7 @@ ORDER: dict[str, list[str]] = {
             "geodesics"
         ),
         "liehom.flow.action": (
-            "maps exponential custom_exponential expression components frames field rigid_motions motions space "
+            "maps exponential custom_exponential expression components frames field motions space "
             "fingerprint invariants quadrics"
         ),
         "liehom.flow.convergence": "reference orders costs",

@@ -18,7 +18,7 @@ from liehom.base.typing import Array, IntegerArray, Values
 from liehom.flow.action.components import joined
 from liehom.flow.action.field import GeneratorField
 from liehom.flow.action.maps import FieldMatrix
-from liehom.flow.action.rigid_motions import are_rotations, matrix_to_quaternion, quaternion_to_matrix
+from liehom.flow.action.motions import are_rotations, matrix_to_quaternion, quaternion_to_matrix
 from liehom.flow.door import QQ, ExactMatrix, LieAlgebra, Representation, abelian, adjoint, direct_sum, so
 from liehom.flow.engines.arguments import SingleRunOptions
 from liehom.flow.propagation.integration import integrate

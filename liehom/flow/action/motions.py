@@ -1,27 +1,24 @@
-"""Rotations SO(3) and rigid motions SE(3) as objects: products, exp and log, adjoints, quaternions.
+"""Rotations SO(3) and rigid motions SE(3) as objects: products, exp, log and dexp, adjoints, quaternions.
 
 Each object holds matrices with any leading axes, in numpy or JAX arrays.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from fractions import Fraction
+from functools import cache
+from math import factorial
 from typing import Any, Self, final
 
 import numpy as np
 
 from liehom.base.errors import InputError, ShapeError
-from liehom.base.typing import Values, ValuesLike
-from liehom.flow.action.rigid_motions import (
-    are_rotations,
-    matrix_to_quaternion,
-    quaternion_to_matrix,
-    se3_exp,
-    se3_log,
-    so3_exp,
-    so3_log,
-)
+from liehom.base.typing import Array, Values, ValuesLike
+from liehom.flow.action.exponential import rotation_quotients
 from liehom.flow.series.arrays import as_values, is_jax, namespace
+from liehom.flow.series.lie_series import bernoulli
 
 TOLERANCE = 1e-6
 """How far from a rotation a matrix may be that `from_matrix` takes."""
@@ -114,6 +111,16 @@ class SO3(_Motions):
         """Rotations of rotation vectors (..., 3)."""
         return SO3(so3_exp(_read(tangent, (3,), "a rotation vector")))
 
+    @staticmethod
+    def dexp(x: ValuesLike, y: ValuesLike) -> Values:
+        """dexp_x y, shape (..., 3): exp(x(t)) moves with the velocity dexp_x(x') from the left."""
+        return so3_dexp(_read(x, (3,), "a rotation vector"), _read(y, (3,), "a rotation vector"))
+
+    @staticmethod
+    def dexp_inverse(x: ValuesLike, y: ValuesLike) -> Values:
+        """dexp_x^-1 y, shape (..., 3), for |x| < 2 pi."""
+        return so3_dexp_inverse(_read(x, (3,), "a rotation vector"), _read(y, (3,), "a rotation vector"))
+
     def log(self) -> Values:
         """Rotation vectors (..., 3) of length at most pi."""
         return so3_log(self.matrix)
@@ -182,6 +189,16 @@ class SE3(_Motions):
         """Motions of elements (omega, v) of se(3), shape (..., 6)."""
         return SE3(se3_exp(_read(tangent, (6,), "an element of se(3)")))
 
+    @staticmethod
+    def dexp(x: ValuesLike, y: ValuesLike) -> Values:
+        """dexp_x y, shape (..., 6): exp(x(t)) moves with the velocity dexp_x(x') from the left."""
+        return se3_dexp(_read(x, (6,), "an element of se(3)"), _read(y, (6,), "an element of se(3)"))
+
+    @staticmethod
+    def dexp_inverse(x: ValuesLike, y: ValuesLike) -> Values:
+        """dexp_x^-1 y, shape (..., 6), for |omega| < 2 pi."""
+        return se3_dexp_inverse(_read(x, (6,), "an element of se(3)"), _read(y, (6,), "an element of se(3)"))
+
     def log(self) -> Values:
         """Elements (omega, v) of se(3), shape (..., 6), with omega of length at most pi."""
         return se3_log(self.matrix)
@@ -209,3 +226,244 @@ class SE3(_Motions):
     def translation(self) -> Values:
         """The vectors x, shape (..., 3)."""
         return self.matrix[..., :3, 3]
+
+
+def are_rotations(matrices: Array, atol: float) -> bool:
+    """Whether the entries of R R^T differ from those of 1 by at most atol, and det R > 0, for matrices (..., 3, 3)."""
+    near = np.allclose(matrices @ np.swapaxes(matrices, -1, -2), np.eye(3), rtol=0, atol=atol)
+    return bool(near and np.all(np.linalg.det(matrices.astype(float)) > 0))
+
+
+# Unit quaternions (w, x, y, z), scalar part first, and the rotation matrices that they denote.
+#
+# q v q^-1 = R(q) v,   R(q) = R(-q),   R(p q) = R(p) R(q)
+
+
+def quaternion_to_matrix(q: Values) -> Values:
+    """Rotation matrices (..., 3, 3) of quaternions (..., 4), which are divided by their norms."""
+    xp = namespace(q)
+    w, x, y, z = (q[..., i] for i in range(4))
+    s = 2 / (w * w + x * x + y * y + z * z)
+    rows = [
+        [1 - s * (y * y + z * z), s * (x * y - w * z), s * (x * z + w * y)],
+        [s * (x * y + w * z), 1 - s * (x * x + z * z), s * (y * z - w * x)],
+        [s * (x * z - w * y), s * (y * z + w * x), 1 - s * (x * x + y * y)],
+    ]
+    return xp.stack([xp.stack(row, axis=-1) for row in rows], axis=-2)
+
+
+def matrix_to_quaternion(matrix: Values) -> Values:
+    """Unit quaternions (..., 4) of rotation matrices (..., 3, 3), of the sign for which the largest entry is positive.
+
+    4 q q^T is linear in the matrix; the row of its largest diagonal entry is divided by its norm, so that no digits
+    are lost at any angle.
+    """
+    xp = namespace(matrix)
+    r: Any = matrix
+    (a, b, c), (d, e, f), (g, h, i) = ([r[..., k, j] for j in range(3)] for k in range(3))
+    rows = [
+        [1 + a + e + i, h - f, c - g, d - b],
+        [h - f, 1 + a - e - i, b + d, c + g],
+        [c - g, b + d, 1 - a + e - i, f + h],
+        [d - b, c + g, f + h, 1 - a - e + i],
+    ]
+    outer = xp.stack([xp.stack(row, axis=-1) for row in rows], axis=-2)
+    largest = xp.argmax(xp.stack([rows[k][k] for k in range(4)], axis=-1), axis=-1)
+    row = xp.take_along_axis(outer, largest[..., None, None], axis=-2)[..., 0, :]
+    return row / xp.sqrt(xp.sum(row * row, axis=-1, keepdims=True))
+
+
+# exp, log and the differential of exp for SO(3), unit quaternions and SE(3), for arrays with any leading axes.
+#
+# Elements of so(3) are vectors x, those of se(3) vectors (omega, v), the angular part first. The differential is
+# trivialized on the right, as everywhere in the library:
+#
+#     d/dt exp(x(t)) = dexp_x(x') exp(x),   dexp_x = (exp(ad_x) - 1)/ad_x
+#     d/dt log g(t) = dexp_x^-1(y),         g' = y g,  x = log g
+#
+# All are sums of few powers of ad_x whose coefficients are functions of |omega|^2, by series near 0. log uses
+# quaternions, so no digits are lost near rotations by pi. The functions run on float64, numpy.longdouble and JAX
+# arrays.
+
+SERIES_TERMS = 14
+SERIES_REACH = 1.0
+"""|omega|^2 up to which coefficients are Taylor series."""
+
+
+# -- SO(3) -------------------------------------------------------------------------------------------------
+def so3_exp(x: ValuesLike) -> Values:
+    """Rotation matrices (..., 3, 3) of rotation vectors (..., 3)."""
+    x = as_values(x)
+    xp = namespace(x)
+    s, c, _ = rotation_quotients(_square(x))
+    columns = [s * xp.cross(x, e) + c * xp.cross(x, xp.cross(x, e)) + e for e in np.eye(3)]
+    return xp.stack(columns, axis=-1)
+
+
+def so3_log(rotation: ValuesLike) -> Values:
+    """Rotation vectors (..., 3) of length at most pi of rotation matrices (..., 3, 3)."""
+    return quaternion_log(matrix_to_quaternion(as_values(rotation)))
+
+
+def so3_dexp(x: ValuesLike, y: ValuesLike) -> Values:
+    """dexp_x y, shape (..., 3)."""
+    x, y = as_values(x), as_values(y)
+    cross = namespace(x, y).cross
+    _, c, d = rotation_quotients(_square(x))
+    once = cross(x, y)
+    return y + (c * once + d * cross(x, once))
+
+
+def so3_dexp_inverse(x: ValuesLike, y: ValuesLike) -> Values:
+    """dexp_x^-1 y, shape (..., 3), for |x| < 2 pi."""
+    x, y = as_values(x), as_values(y)
+    cross = namespace(x, y).cross
+    q: Any = _square(x)
+    once = cross(x, y)
+    return y + (-0.5 * once + _inverse_coefficient(q) * cross(x, once))
+
+
+# -- unit quaternions --------------------------------------------------------------------------------------
+def quaternion_log(quaternion: ValuesLike) -> Values:
+    """Rotation vectors (..., 3) of length at most pi of unit quaternions (..., 4); q and -q have the same one."""
+    q: Any = as_values(quaternion)
+    xp = namespace(q)
+    w, v = q[..., :1], q[..., 1:]
+    v, w = xp.where(w < 0, -v, v), xp.abs(w)
+    square = xp.sum(v * v, axis=-1, keepdims=True)
+    small = square < 1e-8 * w * w
+    safe = xp.where(small, 1.0, square)
+    z = square / xp.where(small, w * w, 1.0)
+    near = (1 - z / 3 * (1 - 3 * z / 5)) / xp.where(small, w, 1.0)
+    far = xp.arctan2(xp.sqrt(safe), w) / xp.sqrt(safe)
+    return 2 * xp.where(small, near, far) * v
+
+
+# -- SE(3) -------------------------------------------------------------------------------------------------
+def se3_exp(x: ValuesLike) -> Values:
+    """Homogeneous matrices (..., 4, 4) of elements (omega, v) of se(3), shape (..., 6)."""
+    x = as_values(x)
+    xp = namespace(x)
+    rotation, shift = so3_exp(x[..., :3]), so3_dexp(x[..., :3], x[..., 3:])
+    top = xp.concatenate([rotation, shift[..., None]], axis=-1)
+    last = xp.broadcast_to(xp.asarray([0.0, 0.0, 0.0, 1.0], dtype=top.dtype), (*top.shape[:-2], 1, 4))
+    return xp.concatenate([top, last], axis=-2)
+
+
+def se3_log(motion: ValuesLike) -> Values:
+    """Elements (omega, v) of se(3), shape (..., 6), with |omega| at most pi, of homogeneous matrices (..., 4, 4)."""
+    g: Any = as_values(motion)
+    omega = so3_log(g[..., :3, :3])
+    return namespace(g).concatenate([omega, so3_dexp_inverse(omega, g[..., :3, 3])], axis=-1)
+
+
+def se3_dexp(x: ValuesLike, y: ValuesLike) -> Values:
+    """dexp_x y in se(3), shape (..., 6)."""
+    x, y = as_values(x), as_values(y)
+    c = _se3_coefficients(_square(x[..., :3]))
+    first = se3_bracket(x, y)
+    second = se3_bracket(x, first)
+    third = se3_bracket(x, second)
+    return y + (c[0] * first + c[1] * second + c[2] * third + c[3] * se3_bracket(x, third))
+
+
+def se3_dexp_inverse(x: ValuesLike, y: ValuesLike) -> Values:
+    """dexp_x^-1 y in se(3), shape (..., 6), for |omega| < 2 pi."""
+    x, y = as_values(x), as_values(y)
+    second, fourth = _se3_inverse_coefficients(_square(x[..., :3]))
+    once = se3_bracket(x, y)
+    twice = se3_bracket(x, once)
+    return y + (-0.5 * once + second * twice + fourth * se3_bracket(x, se3_bracket(x, twice)))
+
+
+def se3_bracket(x: ValuesLike, y: ValuesLike) -> Values:
+    """[x, y] = (omega x eta, omega x u + v x eta) for x = (omega, v) and y = (eta, u), shape (..., 6)."""
+    a, b = as_values(x), as_values(y)
+    xp = namespace(a, b)
+    turned = xp.cross(a[..., :3], b[..., 3:]) + xp.cross(a[..., 3:], b[..., :3])
+    return xp.concatenate([xp.cross(a[..., :3], b[..., :3]), turned], axis=-1)
+
+
+# -- coefficients as functions of q = |omega|^2 ------------------------------------------------------------
+def _square(x: Values) -> Values:
+    xp = namespace(x)
+    return xp.sum(x * x, axis=-1, keepdims=True)
+
+
+def _series(q: Values, coefficients: list[Fraction]) -> Values:
+    """The polynomial in q with these coefficients, rounded to its type."""
+    wide = not is_jax(q) and q.dtype == np.longdouble
+    numbers: list[Any] = [
+        np.longdouble(str(c.numerator)) / np.longdouble(str(c.denominator)) if wide else float(c) for c in coefficients
+    ]
+    total: Any = 0 * q + numbers[-1]
+    for c in reversed(numbers[:-1]):
+        total = total * q + c
+    return total
+
+
+def _joined(q: Values, coefficients: list[Fraction], far: Callable[[Values], Values]) -> Values:
+    """A Taylor series near 0 and another expression elsewhere."""
+    xp = namespace(q)
+    small = q < SERIES_REACH
+    return xp.where(small, _series(xp.where(small, q, 0.0), coefficients), far(xp.where(small, 1.0, q)))
+
+
+def _inverse_coefficient(q: Values) -> Values:
+    """(1 - (r/2) cot(r/2))/r^2, the coefficient of ad_x^2 in dexp_x^-1 on so(3)."""
+
+    def far(q: Values) -> Values:
+        s, c, _ = rotation_quotients(q)
+        return (1 - s / (2 * c)) / q
+
+    return _joined(q, [b * (-1) ** k for k, b in enumerate(_bernoulli())], far)
+
+
+@cache
+def _bernoulli() -> list[Fraction]:
+    """B_2k/(2k)! for k = 1, 2, ...: the even coefficients of z/(exp(z) - 1)."""
+    return [b / factorial(k) for k, b in enumerate(bernoulli(2 * SERIES_TERMS))][2::2]
+
+
+def _se3_coefficients(q: Values) -> tuple[Values, ...]:
+    """Coefficients of ad, ..., ad^4 in dexp on se(3), where ad^5 = -2 q ad^3 - q^2 ad."""
+    js = range(2, SERIES_TERMS + 2)
+    first = [Fraction(1, 2), Fraction(0), *(-(j - 1) * (-1) ** j * Fraction(1, factorial(2 * j + 2)) for j in js)]
+    second = [Fraction(1, 6), Fraction(0), *(-(j - 1) * (-1) ** j * Fraction(1, factorial(2 * j + 3)) for j in js)]
+    third = [j * (-1) ** (j - 1) * Fraction(1, factorial(2 * j + 2)) for j in range(1, SERIES_TERMS)]
+    fourth = [j * (-1) ** (j - 1) * Fraction(1, factorial(2 * j + 3)) for j in range(1, SERIES_TERMS)]
+
+    def ratio(a: float, b: float, odd: bool, power: int) -> Callable[[Values], Values]:
+        def far(q: Values) -> Values:
+            xp = namespace(q)
+            r = xp.sqrt(q)
+            sine, cosine = xp.sin(r), xp.cos(r)
+            top = a * r - b * sine + r * cosine if odd else a - r * sine - b * cosine
+            return top / (2 * r**power)
+
+        return far
+
+    return (
+        _joined(q, first, ratio(4, 4, False, 2)),
+        _joined(q, second, ratio(4, 5, True, 3)),
+        _joined(q, third, ratio(2, 2, False, 4)),
+        _joined(q, fourth, ratio(2, 3, True, 5)),
+    )
+
+
+def _se3_inverse_coefficients(q: Values) -> tuple[Values, Values]:
+    """Coefficients of ad^2 and ad^4 in dexp^-1 on se(3)."""
+    beta = _bernoulli()
+    second = [beta[0], Fraction(0), *((j - 1) * (-1) ** (j - 1) * beta[j] for j in range(2, SERIES_TERMS))]
+    fourth = [j * (-1) ** (j - 1) * beta[j] for j in range(1, SERIES_TERMS)]
+
+    def of(power: int, top: float, factor: float) -> Callable[[Values], Values]:
+        def far(q: Values) -> Values:
+            xp = namespace(q)
+            r = xp.sqrt(q)
+            half = xp.sin(r / 2)
+            return top / r**power - (r + factor * xp.sin(r)) / (8 * r ** (power - 1) * half * half)
+
+        return far
+
+    return _joined(q, second, of(2, 2.0, 3.0)), _joined(q, fourth, of(4, 1.0, 1.0))

@@ -9,7 +9,7 @@ from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
 import liehom as lh
-from liehom.flow.action.rigid_motions import matrix_to_quaternion, quaternion_product, quaternion_to_matrix
+from liehom.flow.action.motions import matrix_to_quaternion, quaternion_to_matrix
 from liehom.flow.bodies import BodyState, PoseState, across
 from liehom.studies.rigid_body import RigidBody
 
@@ -36,7 +36,7 @@ def by_quaternions(inertia: Any, m0: Any, force: Callable[..., Any], end: float)
         q, m = y[:4] / np.linalg.norm(y[:4]), y[4:]
         omega = inverse @ m
         state = BodyState(quaternion_to_matrix(q), m, omega)
-        turned = quaternion_product(q, np.concatenate([[0.0], omega])) / 2
+        turned = np.append(-q[1:] @ omega, q[0] * omega + np.cross(q[1:], omega)) / 2  # the quaternion q omega / 2
         return np.concatenate([turned, np.cross(m, omega) + force(state, np.asarray(t))])
 
     start = np.concatenate([matrix_to_quaternion(Q0), m0])
@@ -174,9 +174,6 @@ def test_quaternions_against_scipy() -> None:
     assert np.allclose(quaternion_to_matrix(q), values.as_matrix(), atol=1e-15)
     back = matrix_to_quaternion(values.as_matrix())
     assert np.allclose(back * np.sign(np.sum(back * q, axis=-1))[:, None], q, atol=1e-15)
-    r = Rotation.random(50, random_state=2)
-    product = quaternion_to_matrix(quaternion_product(q, r.as_quat(scalar_first=True)))
-    assert np.allclose(product, (values * r).as_matrix(), atol=1e-15)
 
 
 @pytest.mark.parametrize("axis", range(3))
