@@ -1,7 +1,6 @@
 from liehom import io as io, plotting as plotting, testing as testing
 from liehom.base import (
     budget as budget,
-    disk as disk,
     errors as errors,
     pytrees as pytrees,
     store as store,

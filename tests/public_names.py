@@ -14,7 +14,7 @@ from liehom.base.lazy import stub_names
 FILE = Path(__file__).with_suffix(".txt")
 PACKAGES = [
     "liehom",
-    *(f"liehom.base.{module}" for module in ("budget", "disk", "errors", "pytrees", "store", "tasks")),
+    *(f"liehom.base.{module}" for module in ("budget", "errors", "pytrees", "store", "tasks")),
     *(
         f"liehom.exact.{package}"
         for package in ("scalars", "algebra", "representations", "orbits", "fullness", "pauli", "catalog")

@@ -145,7 +145,7 @@ def test_examples_of_public_names_have_their_imports_on_the_pages(example_import
 def test_an_example_with_its_imports_runs_alone(example_imports: Any) -> None:
     import liehom as lh
 
-    for thing in (lh.disk.digest, lh.decide_fullness, lh.algebra.RootSystem.dominant, lh.LieAlgebra.is_isomorphic):
+    for thing in (lh.tasks.completed, lh.decide_fullness, lh.algebra.RootSystem.dominant, lh.LieAlgebra.is_isomorphic):
         lines = (inspect.getdoc(thing) or "").split("\n")
         example_imports.complete(lines, thing)
         assert sum(line.startswith(">>> ") for line in lines) > 1

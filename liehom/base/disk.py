@@ -37,30 +37,8 @@ DAMAGED = (
 def write_atomically(path: str | os.PathLike[str], content: bytes | memoryview | Callable[[BinaryIO], object]) -> None:
     """Write a file so that any reader, and any interruption, finds the old file or the new one, never a part.
 
-    Parameters
-    ----------
-    path : path_like
-        A symbolic link is followed. A device or a pipe is written to directly.
-    content : bytes or callable
-        The content, or a function that writes it to a binary file.
-
-    Raises
-    ------
-    OSError
-        If the file cannot be written; an existing file is then unchanged.
-
-    Notes
-    -----
     The content goes to a temporary file in the same folder, with a name that no other thread or process uses. It is
     flushed to the disk and then renamed.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> path = Path(tempfile.mkdtemp()) / "file"
-    >>> write_atomically(path, b"abc")
-    >>> path.read_bytes()
-    b'abc'
     """
     target = Path(os.path.realpath(path))
     try:
@@ -89,19 +67,7 @@ def write_atomically(path: str | os.PathLike[str], content: bytes | memoryview |
 
 
 def write_together(folder: str | os.PathLike[str], contents: Mapping[str, bytes]) -> list[Path]:
-    """Paths of several files in a folder, written one after another; Ctrl-C waits until the last one is written.
-
-    Raises
-    ------
-    OSError
-        If a file cannot be written; the files before it are written, and those after it are not.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> [path.name for path in write_together(tempfile.mkdtemp(), {"a.csv": b"1", "a.json": b"2"})]
-    ['a.csv', 'a.json']
-    """
+    """Paths of several files in a folder, written one after another; Ctrl-C waits until the last one is written."""
     paths = [Path(folder) / name for name in contents]
     with _interrupt_afterwards():
         for path, content in zip(paths, contents.values(), strict=True):
@@ -151,20 +117,7 @@ def write_file(path: str | os.PathLike[str], content: bytes | memoryview | Calla
 
 
 def check_target(path: str | os.PathLike[str], *, force: bool = False) -> None:
-    """Raise `FormatError` if a file cannot be written; called before the work.
-
-    Raises
-    ------
-    FormatError
-        If the folder does not exist or is not writable, or the file exists and `force` is False.
-
-    Examples
-    --------
-    >>> check_target("no/folder/out.npz")
-    Traceback (most recent call last):
-    ...
-    liehom.base.errors.FormatError: 'no/folder/out.npz' cannot be written: the folder 'no/folder' does not exist
-    """
+    """Raise `FormatError` if a file cannot be written; called before the work."""
     text = os.fspath(path)
     if not text or "\0" in text:
         raise FormatError(f"{text!r} is not the name of a file")
@@ -186,13 +139,7 @@ def check_target(path: str | os.PathLike[str], *, force: bool = False) -> None:
 
 
 def digest(*parts: npt.ArrayLike) -> str:
-    """SHA-256 fingerprint of arrays and strings, 64 hexadecimal digits.
-
-    Examples
-    --------
-    >>> digest("a", np.zeros(2)) == digest("a", np.zeros(2)), len(digest())
-    (True, 64)
-    """
+    """SHA-256 fingerprint of arrays and strings, 64 hexadecimal digits."""
     state = hashlib.sha256()
     for part in parts:
         array = np.asarray(part)
@@ -214,13 +161,7 @@ def differing(own: str, expected: str) -> str:
 
 
 def checksum(arrays: Mapping[str, npt.ArrayLike], *texts: str) -> str:
-    """Digest of named arrays and of strings: names, types, shapes and contents, whatever the order of the names.
-
-    Examples
-    --------
-    >>> checksum({"a": [1], "b": [2]}) == checksum({"b": [2], "a": [1]}) != checksum({"a": [2], "b": [1]})
-    True
-    """
+    """Digest of named arrays and of strings: names, types, shapes and contents, whatever the order of the names."""
     parts: list[npt.ArrayLike] = [*texts]
     for name in sorted(arrays):
         parts += [name, arrays[name]]
@@ -228,16 +169,7 @@ def checksum(arrays: Mapping[str, npt.ArrayLike], *texts: str) -> str:
 
 
 def write_arrays(file: BinaryIO, arrays: Mapping[str, npt.ArrayLike], texts: Mapping[str, str], *context: str) -> None:
-    """Write named arrays and strings to an .npz archive, with a checksum of them and of the context of the file.
-
-    Examples
-    --------
-    >>> from io import BytesIO
-    >>> write_arrays(file := BytesIO(), {"y": [1, 2]}, {"facts": "{}"}, "run")
-    >>> arrays, texts, is_whole = read_arrays(BytesIO(file.getvalue()), ["facts"], "run")
-    >>> arrays["y"].tolist(), texts, is_whole
-    ([1, 2], ['{}'], True)
-    """
+    """Write named arrays and strings to an .npz archive, with a checksum of them and of the context of the file."""
     marks = {**texts, MARK: checksum(arrays, *context, *texts.values())}
     entries: dict[str, Any] = {**{name: np.array(text) for name, text in marks.items()}, **arrays}
     np.savez(file, **entries)

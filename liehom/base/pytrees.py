@@ -70,21 +70,7 @@ class Leaf(NamedTuple):
 
 
 def mapped(tree: T, function: Callable[[Leaf], object], path: str = "args") -> T:
-    """A pytree of the same structure, with the values of a function of its leaves.
-
-    Parameters
-    ----------
-    tree : pytree
-    function : callable
-        `Leaf` -> new leaf.
-    path : str
-        The name of the tree.
-
-    Examples
-    --------
-    >>> mapped({"inertia": (1.0, 2.0), "gain": 3}, lambda leaf: leaf.path)
-    {'inertia': ("args['inertia'][0]", "args['inertia'][1]"), 'gain': "args['gain']"}
-    """
+    """A pytree of the same structure, with the values of a function of its leaves."""
     return _mapped(tree, function, path)
 
 
@@ -120,13 +106,7 @@ def _updated(tree: MutableMapping[Any, Any], values: dict[Any, Any]) -> MutableM
 
 
 def leaves(tree: Pytree, path: str = "args") -> list[Leaf]:
-    """The leaves of a pytree, in the order of its containers.
-
-    Examples
-    --------
-    >>> leaves({"inertia": (1.0, 2.0), "gain": None})
-    [Leaf(path="args['inertia'][0]", value=1.0), Leaf(path="args['inertia'][1]", value=2.0)]
-    """
+    """The leaves of a pytree, in the order of its containers."""
     if type(tree) is dict:
         return [leaf for key, x in tree.items() for leaf in leaves(x, f"{path}[{key!r}]")]
     if type(tree) in (float, np.ndarray):
@@ -137,43 +117,17 @@ def leaves(tree: Pytree, path: str = "args") -> list[Leaf]:
 
 
 def unwrapped(tree: T) -> T:
-    """The pytree with arrays in place of `PerTrajectory`.
-
-    Examples
-    --------
-    >>> unwrapped({"rate": PerTrajectory([1, 2])})
-    {'rate': array([1, 2])}
-    """
+    """The pytree with arrays in place of `PerTrajectory`."""
     return mapped(tree, lambda leaf: leaf.value.value if isinstance(leaf.value, PerTrajectory) else leaf.value)
 
 
 def numbers_of(tree: Pytree) -> list[npt.NDArray[Any]]:
-    """The leaves as numpy arrays.
-
-    Examples
-    --------
-    >>> numbers_of({"inertia": PerTrajectory([1, 2]), "gain": 0.5})
-    [array([1, 2]), array(0.5)]
-    """
+    """The leaves as numpy arrays."""
     return [np.asarray(leaf.value) for leaf in leaves(unwrapped(tree))]
 
 
 def check_numbers(tree: Pytree, lead: tuple[int, ...]) -> None:
-    """Check that the leaves are real numbers or arrays of them.
-
-    Parameters
-    ----------
-    tree : pytree
-    lead : tuple of int
-        The axes of the ensemble.
-
-    Examples
-    --------
-    >>> check_numbers({"inertia": [1, 2.5], "mode": "fast"}, ())
-    Traceback (most recent call last):
-    ...
-    liehom.base.errors.InputError: args['mode'] is 'fast', expected a real number or an array: let psi close over it
-    """
+    """Check that the leaves are real numbers or arrays of them."""
     for path, leaf in leaves(tree):
         value = leaf.value if isinstance(leaf, PerTrajectory) else leaf
         refuse_masked(path, value)

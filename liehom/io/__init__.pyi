@@ -18,4 +18,3 @@ from liehom.io.other_programs import (
 )
 from liehom.io.page import pair_page as pair_page
 from liehom.io.renderings import latex as latex
-from liehom.io.solution_file import save_solution as save_solution

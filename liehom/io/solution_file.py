@@ -38,36 +38,7 @@ def summary_json(solution: Solution) -> dict[str, Any]:
 
 
 def save_solution(solution: Solution, path: str | os.PathLike[str], *, force: bool = False) -> None:
-    """Write a solution to an .npz file, with its report as a JSON string; `Solution.load` reads it again.
-
-    Parameters
-    ----------
-    solution : Solution
-    path : path_like
-        Name of the file; no suffix is added.
-    force : bool
-        Whether an existing file may be replaced.
-
-    Raises
-    ------
-    FormatError
-        If the file exists and `force` is False, or the file cannot be written.
-
-    Examples
-    --------
-    >>> import json, os, tempfile
-    >>> import numpy as np
-    >>> import liehom as lh
-    >>> field = lh.GeneratorField(lh.defining(lh.so(2)), [1])
-    >>> path = os.path.join(tempfile.mkdtemp(), "rotation.npz")
-    >>> save_solution(lh.propagation.integrate(field, (0, 1), [1.0, 0.0], dt=0.25), path)
-    >>> with np.load(path) as file:
-    ...     print(file["t"].shape, file["y"].shape, json.loads(str(file["report"]))["n_steps"])
-    ...
-    (5,) (2, 5) 4
-    >>> lh.Solution.load(path).n_steps
-    4
-    """
+    """Write a solution to an .npz file, with its report as a JSON string; `Solution.load` reads it again."""
     import numpy as np
 
     from liehom.flow.run.solution import write_solution

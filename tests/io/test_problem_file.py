@@ -14,7 +14,7 @@ import liehom as lh
 from liehom import io
 from liehom.base import errors
 from liehom.flow.run.solution import Solution
-from liehom.io.solution_file import report_json
+from liehom.io.solution_file import report_json, save_solution
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 SPHERE: dict[str, Any] = {
@@ -253,7 +253,7 @@ def sym3(y: Any) -> Any:
 def test_a_solution_file_has_arrays_and_a_text(tmp_path: Path) -> None:
     solution = problem(base="euler", order=3, dt=0.25).integrate()
     out = tmp_path / "out.npz"
-    io.save_solution(solution, out)
+    save_solution(solution, out)
     with np.load(out, allow_pickle=False) as file:
         assert {"report", "t", "y"} <= set(file.files)
         assert np.array_equal(file["t"], solution.t)
@@ -268,7 +268,7 @@ def test_a_solution_file_has_arrays_and_a_text(tmp_path: Path) -> None:
 
 
 def test_a_name_without_suffix_is_kept(tmp_path: Path) -> None:
-    io.save_solution(problem().integrate(), tmp_path / "out")
+    save_solution(problem().integrate(), tmp_path / "out")
     assert os.listdir(tmp_path) == ["out"]
 
 
@@ -277,9 +277,9 @@ def test_a_file_that_is_there_stays(tmp_path: Path) -> None:
     out.write_text("mine")
     solution = problem().integrate()
     with refuses(errors.FormatError, "out.npz", "there already"):
-        io.save_solution(solution, out)
+        save_solution(solution, out)
     assert out.read_text() == "mine"
-    io.save_solution(solution, out, force=True)
+    save_solution(solution, out, force=True)
     with np.load(out) as file:
         assert file["y"].shape == solution.y.shape
 
@@ -290,7 +290,7 @@ def test_places_where_no_file_can_be(name: str, tmp_path: Path) -> None:
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(tmp_path)
         with pytest.raises(errors.FormatError):
-            io.save_solution(solution, name)
+            save_solution(solution, name)
     assert list(tmp_path.iterdir()) == []
 
 
@@ -301,7 +301,7 @@ def test_nothing_half_written_stays(tmp_path: Path, monkeypatch: pytest.MonkeyPa
 
     monkeypatch.setattr(np, "savez", fails)
     with refuses(errors.FormatError, "No space left"):
-        io.save_solution(problem().integrate(), tmp_path / "out.npz")
+        save_solution(problem().integrate(), tmp_path / "out.npz")
     assert list(tmp_path.iterdir()) == []
 
 

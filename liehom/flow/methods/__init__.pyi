@@ -21,7 +21,6 @@ from liehom.flow.methods.runge_kutta import (
     RootedTree as RootedTree,
     Tableau as Tableau,
     Violation as Violation,
-    elementary_weight as elementary_weight,
     rooted_trees as rooted_trees,
 )
 from liehom.flow.methods.stability import amplification as amplification, stability_limit as stability_limit

@@ -154,33 +154,6 @@ def _arrays(a: MethodArray, b: MethodArray) -> tuple[npt.NDArray[Any], npt.NDArr
     return matrix, weights, np.ones(stages, dtype=object if exact else np.result_type(matrix, weights))
 
 
-def elementary_weight(tree: RootedTree, a: MethodArray, b: MethodArray) -> Any:
-    """Phi(t), the weight of a tree in a method, a number; its weight in the exact solution is 1/gamma(t).
-
-    Parameters
-    ----------
-    tree : RootedTree
-    a, b : array-like, shapes (s, s) and (s,)
-        Floats, or exact scalars (``Fraction``, field elements) as lists or numpy arrays of objects.
-
-    Examples
-    --------
-    >>> from fractions import Fraction
-    >>> heun = [[0, 0], [1, 0]], [Fraction(1, 2), Fraction(1, 2)]
-    >>> [elementary_weight(tree, *heun) for n in (1, 2, 3) for tree in rooted_trees(n)]
-    [Fraction(1, 1), Fraction(1, 2), Fraction(1, 2), Fraction(0, 1)]
-    """
-    matrix, weights, ones = _arrays(a, b)
-
-    def stages(t: RootedTree) -> npt.NDArray[Any]:
-        values = ones
-        for child in t.children:
-            values = values * (matrix @ stages(child))
-        return values
-
-    return weights @ stages(tree)
-
-
 def elementary_weights(a: MethodArray, b: MethodArray) -> Iterator[npt.NDArray[Any]]:
     """Iterator over the arrays of Phi(t) for the trees of order 1, of order 2, and so on through `MAX_ORDER`."""
     matrix, weights, ones = _arrays(a, b)

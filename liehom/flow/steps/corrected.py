@@ -50,29 +50,7 @@ REFINEMENTS = 2
 
 
 def isotropy_fraction(action: Action, flow: Flow, leading: int, order: int) -> Values:
-    """Fraction s(rate t_1) of each correction that isotropy makes, shape (...,).
-
-    Parameters
-    ----------
-    action : Action
-    flow : Flow
-        At least to this order.
-    leading : int
-        l >= 1.
-    order : int
-        The last k.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> import liehom as lh
-    >>> from liehom.flow.steps.expansion import flow_series
-    >>> field = lh.GeneratorField(lh.defining(lh.so(2)), ["t"])
-    >>> times = np.array([0.0, 0.01, 0.3, 1.0])
-    >>> flow = flow_series(field, np.ones((4, 1)) * [1.0, 0.0], 3, times)
-    >>> isotropy_fraction(lh.Action(field.representation), flow, 1, 3).round(3).tolist()
-    [0.0, 0.0, 0.383, 1.0]
-    """
+    """Fraction s(rate t_1) of each correction that isotropy makes, shape (...,)."""
     xp = namespace(flow.points.value)
     first = leading * norm(xp, flow.point(leading))
     scale: Any = xp.zeros_like(first) + np.inf
@@ -89,31 +67,14 @@ def isotropy_fraction(action: Action, flow: Flow, leading: int, order: int) -> V
 
 
 def generator_norm(action: Action, x: Values) -> Values:
-    """Upper bound of the norm of rho(x) for x (..., dim g), shape (...,).
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> import liehom as lh
-    >>> round(float(generator_norm(lh.Action(lh.defining(lh.so(3))), np.array([0.6, 0.0, 0.8]))), 12)
-    1.414213562373
-    """
+    """Upper bound of the norm of rho(x) for x (..., dim g), shape (...,)."""
     xp = namespace(x)
     square = xp.einsum("...a,ab,...b->...", x, xp.asarray(action.inner_product.matrix), x)
     return action.max_norm * xp.sqrt(xp.maximum(square, 0.0))
 
 
 def lifted(action: Action, frame: IsotropyFrame, m: Values, tangent: Values) -> Values:
-    """The smallest generator x with rho(x) m = a given tangent vector, shape (..., dim g).
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> import liehom as lh
-    >>> action, m = lh.Action(lh.defining(lh.so(2))), np.array([2.0, 0.0])
-    >>> lifted(action, action.isotropy_frame(m, 1), m, np.array([0.0, 1.0])).tolist()
-    [0.5]
-    """
+    """The smallest generator x with rho(x) m = a given tangent vector, shape (..., dim g)."""
     x = least_generator(frame, tangent)
     for _ in range(REFINEMENTS if tangent.dtype == np.longdouble else 0):  # the frame is of double precision
         x = x + least_generator(frame, tangent - action.infinitesimal(x, m))

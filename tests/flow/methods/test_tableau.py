@@ -25,7 +25,6 @@ from liehom.flow.methods.runge_kutta import (
     Tableau,
     Violation,
     densities,
-    elementary_weight,
     elementary_weights,
     rooted_trees,
 )
@@ -77,6 +76,16 @@ def conditions_written_out(a: Any, b: Any) -> list[Any]:
     ]
 
 
+def elementary_weight(tree: RootedTree, a: Any, b: Any) -> Any:
+    """Phi(t) by its definition on subtrees."""
+    matrix, weights = np.array(a, dtype=object), np.array(b, dtype=object)
+
+    def stages(t: RootedTree) -> Any:
+        return prod((matrix @ stages(child) for child in t.children), start=0 * weights + 1)
+
+    return weights @ stages(tree)
+
+
 small = st.fractions(min_value=-2, max_value=2, max_denominator=7)
 
 
@@ -103,8 +112,6 @@ def test_trees_refuse() -> None:
     for order in (0, MAX_ORDER + 1, 2.0, True, "3"):
         with pytest.raises(InputError, match="integer from 1"):
             rooted_trees(order)  # type: ignore[arg-type]
-    with pytest.raises(ShapeError):
-        elementary_weight(RootedTree(), [[0, 0]], [1])
     with pytest.raises(ShapeError):
         elementary_weights([[0]], [[1]])
 

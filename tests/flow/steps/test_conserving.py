@@ -14,6 +14,7 @@ from liehom.base.errors import InputError
 from liehom.flow.steps.conserving import Conserving
 from liehom.flow.steps.first_integral import combination, conservation_map
 from liehom.flow.steps.step import Generator
+from liehom.io.solution_file import save_solution
 from tests.flow.steps.support import OMEGA, exact_flow, quadratic, rigid_body, slopes, spin, unit
 from tests.flow.steps.test_conservation import energy, quadratic_energy, quartic, spin_energy, spin_start, spins
 
@@ -401,7 +402,7 @@ def test_time_dependent_fields_may_have_integrals() -> None:
 def test_solutions_with_a_conservation_report_are_written(tmp_path: Path) -> None:
     sol = lh.integrate(rigid_body(), (0, 1), START, step=Conserving(lh.Heun(), energy), dt=0.1)
     path = tmp_path / "made.npz"
-    lh.io.save_solution(sol, path)
+    save_solution(sol, path)
     with np.load(path) as file:
         read = json.loads(str(file["report"]))["report"]["conservation"]
     assert read["rank"] == 1 and read["defect"] == sol.report.conservation.defect
