@@ -207,11 +207,6 @@ class RunConstant:
     name : str
     value : float
         Its value in the run for which the step was traced.
-
-    Examples
-    --------
-    >>> RunConstant("rtol", 1e-3)(np.zeros((2, 3))).tolist()
-    [0.001, 0.001]
     """
 
     name: str
@@ -231,11 +226,6 @@ class LaneConstant:
     name : str
     values : array of shape (L,)
         Its values in the run for which the step was traced.
-
-    Examples
-    --------
-    >>> LaneConstant("rate", np.array([1.0, 2.0]))(np.zeros((2, 3)))
-    array([1., 2.])
     """
 
     name: str

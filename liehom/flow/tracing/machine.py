@@ -36,13 +36,7 @@ _ENGINES: dict[str, Engine] = {}
 
 
 def lanes_per_register() -> int:
-    """Number of doubles in a vector register of this processor.
-
-    Examples
-    --------
-    >>> lanes_per_register() in (2, 4, 8)
-    True
-    """
+    """Number of doubles in a vector register of this processor."""
     features = _host()[2]
     return 8 if features.get("avx512f") else 4 if features.get("avx") else 2
 
@@ -247,11 +241,5 @@ def _on_tracers(function: TrajectoryConstant, graph: StepGraph) -> Expr | None:
 
 
 def padded(count: int, width: int) -> int:
-    """Number of lanes, rounded up to whole blocks.
-
-    Examples
-    --------
-    >>> padded(10, 8)
-    16
-    """
+    """Number of lanes, rounded up to whole blocks."""
     return -(-count // width) * width
