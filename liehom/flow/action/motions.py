@@ -276,7 +276,7 @@ def matrix_to_quaternion(matrix: Values) -> Values:
 # exp, log and the differential of exp for SO(3), unit quaternions and SE(3), for arrays with any leading axes.
 #
 # Elements of so(3) are vectors x, those of se(3) vectors (omega, v), the angular part first. The differential is
-# trivialized on the right, as everywhere in the library:
+# trivialized on the right, as everywhere in the library.
 #
 #     d/dt exp(x(t)) = dexp_x(x') exp(x),   dexp_x = (exp(ad_x) - 1)/ad_x
 #     d/dt log g(t) = dexp_x^-1(y),         g' = y g,  x = log g
