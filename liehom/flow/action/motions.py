@@ -276,10 +276,8 @@ def matrix_to_quaternion(matrix: Values) -> Values:
 # exp, log and the differential of exp for SO(3), unit quaternions and SE(3), for arrays with any leading axes.
 #
 # Elements of so(3) are vectors x, those of se(3) vectors (omega, v), the angular part first. The differential is
-# trivialized on the right, as everywhere in the library.
-#
-#     d/dt exp(x(t)) = dexp_x(x') exp(x),   dexp_x = (exp(ad_x) - 1)/ad_x
-#     d/dt log g(t) = dexp_x^-1(y),         g' = y g,  x = log g
+# trivialized on the right, as everywhere in the library. That is, d/dt exp(x(t)) = dexp_x(x') exp(x) with the operator
+# dexp_x = (exp(ad_x) - 1)/ad_x. For g' = y g and x = log g follows x' = dexp_x^-1(y).
 #
 # All are sums of few powers of ad_x whose coefficients are functions of |omega|^2, by series near 0. log uses
 # quaternions, so no digits are lost near rotations by pi. The functions run on float64, numpy.longdouble and JAX
