@@ -36,27 +36,6 @@ STEPS: dict[str, tuple[Any, str]] = {
     "RK4": (lh.RKMK("rk4"), "exp"),
 }
 KEEPING = {"C2": lh.LieTaylor(2), "C4": lh.LieTaylor(4)}
-EXPLAINED = {
-    "E2": "`Corrected(Euler(), 2)`",
-    "E2 cay": "`Corrected(Euler(), 2)` with the Cayley transform",
-    "E4": "`Corrected(Euler(), 4)`",
-    "E6": "`Corrected(Euler(), 6)`",
-    "T4": "`LieTaylor(4)`",
-    "T6": "`LieTaylor(6)`",
-    "T8": "`LieTaylor(8)`",
-    "T12": "`LieTaylor(12)`",
-    "S4": "`Taylor(4)`",
-    "S8": "`Taylor(8)`",
-    "S12": "`Taylor(12)`",
-    "S16": "`Taylor(16)`",
-    "S20": "`Taylor(20)`",
-    "RK4": '`RKMK("rk4")`',
-    "C2": "`Conserving(LieTaylor(2), energy)`",
-    "C4": "`Conserving(LieTaylor(4), energy)`",
-    "adaptive": "the default, with an adaptive step size",
-    "DOP853": '`RKMK("dop853")` with an adaptive step size',
-    "exact orbit": "`ExactOrbit`, the step of the rigid body that stays on the orbit, with the Cayley transform",
-}
 SHORT = {
     "E2": "Corrected 2",
     "E2 cay": "Corrected 2, Cayley",
