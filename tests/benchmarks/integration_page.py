@@ -195,23 +195,24 @@ def _reached(found: Sequence[float], needs: Sequence[float]) -> str:
 
 
 def growth_part(data: dict[str, Any]) -> list[str]:
-    rows = [
-        [
-            row["what"],
-            f"{row['against']} = {', '.join(str(x) for x in row['x'])}",
-            ", ".join(shown(y) for y in row["y"]) + f" {row['unit']}",
-            f"{row['exponent']:.1f}",
-            "-" if not math.isfinite(row["last"]) else f"{row['last']:.1f}",
-        ]
-        for row in data["growth"]
-    ]
-    head = ["step", "against", "cost of a step", "exponent", "of the second half"]
+    found: dict[tuple[str, str], dict[str, str]] = {}
+    for row in data["growth"]:
+        step, way = row["what"].removesuffix(", N = 1024").rsplit(", ", 1)
+        last = f", {row['last']:.1f}" if math.isfinite(row["last"]) else ""
+        against = f"{row['against']} = {', '.join(str(x) for x in row['x'])}"
+        kind = "operations" if row["unit"] == "operations" else way
+        cost = ", ".join(shown(y) for y in row["y"]) + ("" if kind == "operations" else f" {row['unit']}")
+        found.setdefault((step, against), {})[kind] = f"{cost}: {row['exponent']:.1f}{last}"
+    columns = ("operations", "compiled", "numpy")
     return [
         "### Growth of the cost with order, dimension and number of trajectories", "",
-        "The exponents are slopes of the cost of a step by least squares of logarithms. An expansion to order n needs "
-        "O(n²) products of coefficients. A generator that is affine in m on Sᵏ⁻¹ costs O(k dim g) = O((dim g)^1.5). An "
+        "A cell has the costs of a step and, after the colon, the exponents: slopes by least squares of logarithms, of "
+        "all and of the second half. The column numpy is for 1024 trajectories. An expansion to order n needs O(n²) "
+        "products of coefficients. A generator that is affine in m on Sᵏ⁻¹ costs O(k dim g) = O((dim g)^1.5). An "
         "ensemble costs O(N) if the arrays are so long that the overhead of numpy's calls is small.", "",
-        *table(head, rows),
+        *table(["step", "against", *columns], [
+            [*key, *(cells.get(column, "-") for column in columns)] for key, cells in found.items()
+        ]),
     ]  # fmt: skip
 
 

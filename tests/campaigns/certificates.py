@@ -349,19 +349,21 @@ def table(campaign: Campaign) -> str:
         rows[outcome][strategy] += n
     for name in ("accepted with the true verdict", WRONG, OTHER):
         rows.setdefault(name, Counter())
-    order = sorted(rows, key=lambda name: (name.startswith("refused"), -rows[name].total()))
+    refused = {name.removeprefix("refused: "): rows.pop(name) for name in list(rows) if name.startswith("refused")}
+    rows["refused"] = sum(refused.values(), Counter())
+    reasons = sorted(refused, key=lambda name: -refused[name].total())
+    most = [f"`{name}` ({refused[name].total():,})" for name in reasons]
     lines = [
         f"{campaign.done:,} certificates, {len(campaign.names)} pairs over QQ, {len(campaign.names) + len(NATIVE)} "
         f"over each of three number fields, seed {campaign.seed}, {campaign.seconds / 60:.0f} minutes on one core "
-        f"(`tests/campaigns/certificates.py`).",
+        f"(`tests/campaigns/certificates.py`). Conditions of the checker that refused some: {', '.join(most)}.",
         "",
         f"| outcome | {' | '.join(strategies)} | together |",
         "|---|" + "---:|" * (len(strategies) + 1),
     ]
-    for name in order:
+    for name in sorted(rows, key=lambda name: (name == "refused", -rows[name].total())):
         cells = [f"{rows[name][s]:,}" for s in strategies]
-        shown = f"refused: `{name.removeprefix('refused: ')}`" if name.startswith("refused") else name
-        lines.append(f"| {shown} | {' | '.join(cells)} | {rows[name].total():,} |")
+        lines.append(f"| {name} | {' | '.join(cells)} | {rows[name].total():,} |")
     sums = [f"{sum(rows[name][s] for name in rows):,}" for s in strategies]
     lines.append(f"| together | {' | '.join(sums)} | {campaign.done:,} |")
     return "\n".join(lines)

@@ -70,16 +70,23 @@ def doors_table() -> str:
 
 
 def damage_table() -> str:
+    """One row for each file, one column for each damage."""
     data = figures("damage")
     if data is None:
         return ""
-    columns = ["noticed", "identical", "believed"]
-    rows = [[row["class"], *(f"{row[key]:,}" for key in columns)] for row in data["rows"]]
-    rows.append(["together", *(f"{sum(row[key] for row in data['rows']):,}" for key in columns)])
-    names = ["noticed", "read, identical", "read, different"]
-    return f"{data['count']:,} damages, seed {data['seed']} (`tests/campaigns/damage.py`).\n\n" + table(
-        ["file and damage", *names], rows
-    )
+    found = {tuple(row["class"].split("; ")): row for row in data["rows"]}
+    files, damages = (list(dict.fromkeys(key[k] for key in found)) for k in (0, 1))
+
+    def cell(file: str, damage: str) -> str:
+        row = found.get((file, damage))
+        return "-" if row is None else "/".join(str(row[key]) for key in ("noticed", "identical", "believed"))
+
+    sums = [sum(row[key] for row in found.values()) for key in ("noticed", "identical", "believed")]
+    return (
+        f"{data['count']:,} damages, seed {data['seed']} (`tests/campaigns/damage.py`). Noticed: {sums[0]:,}; read "
+        f"with the same content: {sums[1]:,}; read with another content: {sums[2]:,}. The cells have these three "
+        "numbers.\n\n"
+    ) + table(["file", *damages], [[file, *(cell(file, damage) for damage in damages)] for file in files])
 
 
 def certificates_table() -> str:
