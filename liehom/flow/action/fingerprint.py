@@ -280,13 +280,17 @@ class Parts:
     """The parts of functions, compared in later calls."""
 
     def __init__(self, sources: Sequence[Part]) -> None:
-        walks = [_walk("", partial(sources.__getitem__, i), {}) for i in range(len(sources))]
-        self._rows = [(read, x, *_looked(x, is_leaf)) for walk in walks for _, read, x, is_leaf in walk]
+        walks = [enumerate(_walk("", partial(sources.__getitem__, i), {})) for i in range(len(sources))]
+        # a source itself, the first of its parts, is the same as before
+        parts = [part for walk in walks for k, part in walk if k or part[3]]
+        self._rows = [(read, x, *_looked(x, is_leaf)) for _, read, x, is_leaf in parts]
 
     def changed(self) -> bool:
         """Whether the code of a function, or what it names, is another one than before."""
-        rows = [row for row in self._rows if row[2] is not None or row[0]() is not row[1]]
-        return any(_has_changed(*row) for row in rows) if rows else False
+        for row in self._rows:  # noqa: SIM110 - in every repeated call, where a generator costs as much as the rows
+            if (row[2] is not None or row[0]() is not row[1]) and _has_changed(*row):
+                return True
+        return False
 
 
 @final

@@ -167,7 +167,10 @@ class Memory:
         first = kernel.packed(lanes, {"alive": 1.0, **lowest_numbers(kernel.graph)})
         self.first, self.block = np.array([first, first]), np.array([first, first])
         self.state, self.start = self.block[0], self.block[1, : kernel.graph.size]
-        self.cells = self.state.reshape(-1).data.cast("B").cast("d")
+        # views of the state, then of the start, as lists of numbers: for a few numbers they are quicker than arrays
+        self.cells = self.block.reshape(-1).data.cast("B").cast("d")
+        self.fresh = self.first.reshape(-1).data.cast("B").cast("d")
+        self.views: dict[str, memoryview[float]] = {}
         self.points: Array = self.block[:, : kernel.graph.size, :lanes].transpose(0, 2, 1)
         self.rows: Array = np.ones((max(1, len(kernel.lane_constants)), self.state.shape[1]))
         argument = kernel.argument(self.state, start=self.start, rows=self.rows, constants=constants)
@@ -182,6 +185,7 @@ class Memory:
         array = self.arrays[name]
         if len(array) < rows:
             array = self.arrays[name] = np.empty((rows, *shape))
+            self.views[name] = array.reshape(-1).data.cast("B").cast("d")
             self.integers[PLACES[name]] = array.ctypes.data
         return array
 

@@ -38,6 +38,7 @@ from liehom.flow.engines.lattice import LatticeStep, lattice_step, solved_on_lat
 from liehom.flow.engines.plan import (
     CHUNK,
     KINDS,
+    Numbers,
     Plan,
     floats,
     form_of,
@@ -71,6 +72,8 @@ class LlvmEngine:
     def __init__(self, store: CodeStore | None = None, watch: Watch | None = None) -> None:
         self._store = CodeStore() if store is None else store
         self._plans: dict[Hashable, Plan] = {}
+        # of a call with numbers alone: shape, numbers, plan
+        self._latest: tuple[tuple[int, ...], Numbers | None, Plan | None] = (), None, None
         self._lattice: LatticeStep | None = None
         self._watch = watch  # of the psi from which the store was made
 
@@ -80,7 +83,7 @@ class LlvmEngine:
     def solve(self, problem: Problem) -> Solution:
         """The solution of a problem."""
         if self._watch is None or self._watch.changed():
-            self._store, self._plans, self._lattice = CodeStore(), {}, None
+            self._store, self._plans, self._latest, self._lattice = CodeStore(), {}, ((), None, None), None
             self._watch = Watch(problem.bound, problem.start, problem.span[0])
         if problem.field.sites:
             step, self._lattice = self._lattice, None  # its planes serve one call at a time
@@ -119,7 +122,12 @@ class LlvmEngine:
             except TypeError:  # sizes in an array are not hashable
                 numbers = numbers_of.__wrapped__(**others)
             found = None if args is None else leaves(args)
-            plan = None if numbers is None else self._plans.get(form_of(points.shape, numbers, times, events, found))
+            shape, known, plan = self._latest
+            if found is not None or others is not options or numbers is not known or points.shape != shape:
+                shape = points.shape
+                plan = None if numbers is None else self._plans.get(form_of(shape, numbers, times, events, found))
+                if found is None and others is options:
+                    self._latest = shape, numbers, plan
             if numbers is None or plan is None or self._watch.changed():
                 return None
             return plan(numbers, points, float(first), float(last), times, args, found)  # type: ignore[has-type]
@@ -141,6 +149,7 @@ class LlvmEngine:
         events = None if o.events is None else planned_events(problem, run.step, dimension, np.asarray(solution.y))
         if events is None and o.events is not None:
             return
+        self._latest = (), None, None
         if len(self._plans) >= MAX_PLANS:
             self._plans.pop(next(iter(self._plans)))
         kernel = self._store.kernel(key, graph, int(np.prod(start.shape[:-1], dtype=int)))

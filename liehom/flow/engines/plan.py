@@ -37,7 +37,7 @@ from liehom.flow.methods.stability import MIN_STEPS
 from liehom.flow.run.check import gap_of
 from liehom.flow.run.control import SLACK
 from liehom.flow.run.options import ATOL, END, MESSAGES, RTOL
-from liehom.flow.run.records import EventLog, StepStatistics, bounds_of
+from liehom.flow.run.records import EventLog, StepStatistics
 from liehom.flow.run.solution import DenseSolution, Solution, solution_of
 from liehom.flow.steps.step import Generator, Step
 from liehom.flow.tracing.graph import LaneConstant
@@ -233,6 +233,8 @@ class Plan:
         names = () if problem.args is None else arg_values(problem.args, len(self.shape))
         self.names = [(name, self.slot.get(name)) for name in names]
         self.memory = Memory(kernel, self.lanes, self.constants) if small else None
+        self.begin = len(kernel.names)
+        self.is_alone = not shape[:-1] and kernel.width == 1 and not kernel.lane_constants
         self.is_judged, self.rows, self.lock = problem.options.dt is not None, ROOM, threading.Lock()
         # rows of a path up to which there is one piece
         row = max(8 * (self.n + 2) / PATH_BYTES_PER_CALL, work / OPERATIONS_PER_CALL, 1 / LANE_STEPS_FOR_THREADS)
@@ -261,6 +263,10 @@ class Plan:
             return None
         try:
             values = self._take(numbers, begin, end, rest, found)
+            if times is None and self.is_alone and (total or self.rows) <= self.short:
+                known = self._alone(numbers, points, (begin, end), values, total, args)
+                if known is not None:
+                    return known
             points = points if len(self.shape) == 1 else points.reshape(self.lanes, self.n)
             y = None if times is None else np.empty((self.lanes, self.n, len(times)))
             keeps = y is None or numbers.dense or self.events is not None
@@ -302,6 +308,47 @@ class Plan:
         # what the other entries need is copied: points may change
         start = None if self.ranked is None else points.copy()
         return solution_of(t, result, END, lambda: self._others(task, args, numbers, path, start, log))
+
+    def _alone(
+        self, numbers: Numbers, points: Array, span: tuple[float, float], values: Mapping[str, Any], total: int,
+        args: Pytree,
+    ) -> Solution | None:  # fmt: skip
+        """The solution of one trajectory with its path, of few numbers; None if the call takes more than one run."""
+        memory: Any = self.memory
+        cells, integers, n, size, stops = memory.cells, memory.integers, self.n, numbers.dt, memory.views["stops"]
+        cells[:], m = memory.fresh, points.data
+        cells[:n] = cells[self.begin : self.begin + n] = m
+        stops[0] = stops[1] = span[1]
+        integers[LAST_STOP] = integers[FIRST_STOP] = integers[BEGIN] = 0
+        size = values["direction"] * size if size is not None else numbers.first_step or numbers.min_step or inf
+        path = memory.path(total or self.rows, n + 2)
+        first = memory.views["path"]
+        first[:n], first[n], memory.floats[ORIGIN], memory.floats[STEP_SIZE] = m, span[0], span[0], size
+        integers[END_STEP], integers[TOTAL] = total or len(path) - 1, total
+        if not total:
+            cells[self.time], cells[self.size] = span[0], size
+        self.kernel.run(memory.address)
+        left, count = cells[self.alive], int(cells[self.taken])
+        rows = total if total else integers[BEGIN]
+        good = left > 0 if total else left < 0 and rows == count < numbers.max_steps
+        if not good or (not self.is_judged and count >= MIN_STEPS):
+            return None
+        for i in self.trouble:
+            if cells[i] > 0:
+                return None
+        if total:
+            cells[self.taken] = total
+        path, state, log = path[: rows + 1].copy(), cells.tobytes(), None
+        if self.events is not None and (log := self.events(path, values, span)) is None:
+            return None
+        start = None if self.ranked is None else np.array([points])
+        task: Task = numbers, points, None, span, values, total, None, True
+        t, y = path[:, n, 0], path[:, :n, 0].T
+
+        def others() -> dict[str, object]:
+            return self._others(task, args, np.frombuffer(state, count=self.begin)[:, None], path, start, log)
+
+        return solution_of(t, y, END, others)
 
     def _made(self, task: Task, lanes: slice, memory: Memory | None = None) -> Piece | None:
         """Run the kernel for some lanes from begin to end; None if one of them fails."""
@@ -378,7 +425,7 @@ class Plan:
         dt, rtol, atol, most, least, _, _, looks, *_ = numbers
         tiny = rest if dt is not None or rest > least else least
         gap = (gap_of(looks, end - begin, self.problem.field) if "gap" in self.slot else None) or 0.0
-        direction, latest = bounds_of((begin, end))
+        direction, latest = 1.0 if end >= begin else -1.0, abs(begin) + abs(end) + 1.0  # see bounds_of
         known: Any = 1.0, direction, rest, end, rtol, atol, most, tiny, gap, latest
         slots = self.slots
         for place, i in self.own:

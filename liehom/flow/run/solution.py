@@ -366,12 +366,15 @@ class Solution(Displayed):
 
 def solution_of(t: Array, y: Array, status: int, others: Callable[[], Mapping[str, object]]) -> Solution:
     """A solution whose other entries are made when one of them is asked for."""
-    solution, put = object.__new__(Solution), object.__setattr__
-    put(solution, "t", t)
-    put(solution, "y", y)
-    put(solution, "status", status)
-    put(solution, "_others", others)
+    solution = object.__new__(Solution)
+    _put_t(solution, t)
+    _put_y(solution, y)
+    _put_status(solution, status)
+    _put_others(solution, others)
     return solution
+
+
+_put_t, _put_y, _put_status, _put_others = (vars(Solution)[x].__set__ for x in ("t", "y", "status", "_others"))
 
 
 def with_steps(solution: Solution, steps: Callable[[], DenseSolution]) -> Solution:

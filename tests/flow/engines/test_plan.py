@@ -319,6 +319,19 @@ def test_lists_and_numbers_of_numpy_are_the_same_call(change: Callable[..., Any]
     assert engine.solved == 1
 
 
+@pytest.mark.parametrize("options", [{"dt": 0.125}, {"rtol": 1e-9}])
+@pytest.mark.parametrize(
+    "view",
+    [START[::-1], np.broadcast_to(np.float64(0.5), (3,)), np.arange(6.0)[::2], np.arange(6.0).reshape(3, 2)[:, 1]],
+)
+def test_points_may_be_views_of_other_arrays(view: Any, options: dict[str, Any]) -> None:
+    made, engine = propagator(step=lh.Taylor(8))
+    made((0.0, 1.0), START, **options)
+    sol = made((0.0, 1.0), view, **options)
+    assert engine.solved == 1
+    assert_same(sol, propagator(step=lh.Taylor(8))[0]((0.0, 1.0), view.copy(), **options))
+
+
 def test_points_of_integers_and_lists_of_times_are_the_same_call() -> None:
     made, engine = propagator(step=lh.Taylor(8))
     wanted = made((0.0, 1.0), [0.0, 1.0, 2.0], dt=0.125, t_eval=[0.5, 1])
