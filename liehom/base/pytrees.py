@@ -33,7 +33,7 @@ class PerTrajectory:
     value : array_like of shape (..., *shape)
         Its leading axes are those of the ensemble. Where all trajectories are stepped at once, psi gets the array, and
         where one is traced, its slice. So it is used like t: a number for each trajectory, of shape (...,), multiplies
-        a point as ``value[..., None] * m``.
+        a point as ``value[..., None] * m``. With one initial point, its first axis is that of the ensemble.
 
     Examples
     --------
@@ -41,7 +41,7 @@ class PerTrajectory:
     >>> import liehom as lh
     >>> field = lh.GeneratorField(lh.defining(lh.so(2)), lambda m, t, args: args["rate"][..., None])
     >>> args = {"rate": lh.PerTrajectory([0.5, 1.0])}
-    >>> ends = lh.integrate(field, (0, np.pi), np.eye(2)[[0, 0]], args=args, dt=0.1).y[..., -1]
+    >>> ends = lh.integrate(field, (0, np.pi), [1, 0], args=args, dt=0.1).y[..., -1]
     >>> np.round(ends, 8) + 0.0
     array([[ 0.,  1.],
            [-1.,  0.]])

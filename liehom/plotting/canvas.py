@@ -183,7 +183,8 @@ def _is_dark() -> bool:
 def figure_of(axes: Axes) -> Figure:
     """Figure that the axes of the caller belong to."""
     if not isinstance(axes, matplotlib_module("axes").Axes):
-        raise InputError(f"expected axes of matplotlib, got {displayed(axes)}")
+        path = f": write path={axes!r}" if isinstance(axes, str | os.PathLike) else ""
+        raise InputError(f"expected axes of matplotlib, got {displayed(axes)}{path}")
     return axes.figure.figure  # of axes in a subfigure, the figure that has all of them
 
 

@@ -44,8 +44,8 @@ def controllability(
     >>> import liehom as lh
     >>> turn = [[[0, 0, 0], [0, 0, -1], [0, 1, 0]], [[0, 0, 1], [0, 0, 0], [-1, 0, 0]]]
     >>> print(controllability(drift=turn[0], controls=turn[1:]))
-    control system on R^3 with a drift: so(3) of dimension 3
-      group: controllable, since it is compact
+    control system on R^3 with a drift: so(3)
+      group, of dimension 3: controllable, since it is compact
       R^3 minus 0: not transitive, since orbits meet each ray once
       sphere S^2: controllable, since the group is compact
       projective space RP^2: controllable, since the group is compact
@@ -175,20 +175,24 @@ class Controllability(Immutable):
             return Reach("controllable", "since the flow of the drift is almost periodic")
         return Reach("accessible", "since the matrices generate a transitive group")
 
+    def __bool__(self) -> bool:
+        raise InputError(
+            "a control system is controllable on one space and not on another: ask bool(system.group), of "
+            "dimension system.algebra.dimension, bool(system.space), bool(system.sphere) or bool(system.projective)"
+        )
+
     def __str__(self) -> str:
         rho = self.representation
         n, letter, real = rho.complex_size or rho.size, "R" if rho.complex_size is None else "C", rho.size
         places = {
-            "group": self.group,
+            f"group, of dimension {self.algebra.dimension}": self.group,
             f"{letter}^{n} minus 0": self.space,
             f"sphere S^{real - 1}": self.sphere,
             f"projective space {letter}P^{n - 1}": self.projective,
         }
         numerical = "" if self.algebra.field.exact else " (numerical, not proved)"
         drift = "with a drift" if self.drifts else "without drift"
-        lines = [
-            f"control system on {letter}^{n} {drift}: {self.name} of dimension {self.algebra.dimension}{numerical}"
-        ]
+        lines = [f"control system on {letter}^{n} {drift}: {self.name}{numerical}"]
         return "\n  ".join([*lines, *(f"{place}: {reach}" for place, reach in places.items())])
 
     def __repr__(self) -> str:

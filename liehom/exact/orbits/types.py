@@ -11,7 +11,7 @@ from liehom.base.typing import VectorLike
 from liehom.exact.algebra.core.lie_algebra import LieAlgebra
 from liehom.exact.algebra.core.subalgebra import Subalgebra
 from liehom.exact.algebra.roots.real_form import join_real_forms
-from liehom.exact.algebra.structure.identification import small_name
+from liehom.exact.algebra.structure.identification import familiar_name, small_name
 from liehom.exact.orbits.conjugacy import ConjugacyInvariants, ConjugacyProof, Value, prove_conjugate
 from liehom.exact.representations.core.representation import Representation
 from liehom.exact.scalars.field import MatrixLike, Scalar
@@ -21,8 +21,9 @@ def structure_name(algebra: LieAlgebra | Subalgebra) -> str:
     """Name of a Lie algebra by its structure: 'so(3) + R^2' if it is reductive, else such as 'so(3) ⋉ R^3'.
 
     The simple ideals of a Levi factor have their canonical names (so(4) is 'so(3) + so(3)'). The centre of a reductive
-    algebra or the radical follows. It is 'R^n' if abelian, else its name in the tables of small dimension
-    (`LieAlgebra.identify`), else 'nilpotent(n)' or 'solvable(n)' with its dimension n. '0' is the zero algebra.
+    algebra or the radical follows. It is 'R^n' if abelian, else a name such as 'e(2)' or 'heisenberg(1)', else its name
+    in the tables of small dimension (`LieAlgebra.identify`), else 'nilpotent(n)' or 'solvable(n)' with its dimension n.
+    '0' is the zero algebra.
 
     Parameters
     ----------
@@ -38,7 +39,7 @@ def structure_name(algebra: LieAlgebra | Subalgebra) -> str:
     --------
     >>> import liehom as lh
     >>> structure_name(lh.u(3)), structure_name(lh.euclidean(3)), structure_name(lh.heisenberg(1))
-    ('su(3) + R', 'so(3) ⋉ R^3', 'A3,1')
+    ('su(3) + R', 'so(3) ⋉ R^3', 'heisenberg(1)')
     """
     own = algebra.as_algebra() if isinstance(algebra, Subalgebra) else algebra
     if not isinstance(own, LieAlgebra):
@@ -57,7 +58,7 @@ def structure_name(algebra: LieAlgebra | Subalgebra) -> str:
         what = reductive_name([], radical.dimension)
     else:
         kind = f"{'nilpotent' if inside.is_nilpotent() else 'solvable'}({radical.dimension})"
-        what = small_name(inside) or kind
+        what = familiar_name(small_name(inside)) or kind
     return what if radical.dimension == own.dimension else f"{levi} ⋉ {what}"
 
 
@@ -100,7 +101,7 @@ class OrbitType:
     >>> import liehom as lh
     >>> light = orbit_types(lh.defining(lh.so(3, 1)), [[1, 0, 0, 1], [3, 0, 4, -5]])[0]
     >>> light, light.structure(), light.verify()
-    (<orbit type: orbits of dimension 3, isotropy of dimension 3, points 0, 1>, 'A3,6', True)
+    (<orbit type: orbits of dimension 3, isotropy of dimension 3, points 0, 1>, 'e(2)', True)
     """
 
     orbit_dimension: int

@@ -370,7 +370,9 @@ def check_point(representation: Representation, m: ValuesLike, *, fixed: bool = 
     """Dimensions of the orbits of points, shape (...), after a check of the points."""
     values: Values = as_values(m)
     if values.ndim == 0 or values.shape[-1] != representation.size:
-        raise ShapeError(f"a point has {representation.size} coordinates (on its last axis), got shape {values.shape}")
+        size, n = representation.size, representation.complex_size
+        text = f"a point has {size} coordinates (on its last axis), got shape {values.shape}"
+        raise ShapeError(text + f"; rho.real_point(z) has those of a vector z in C^{n}" * (n is not None))
     if is_traced(values):
         raise InputError("the dimension of an orbit cannot be found from a traced point: check it outside of jax.jit")
     point = np.asarray(values, dtype=float)

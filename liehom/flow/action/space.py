@@ -33,6 +33,13 @@ class Action:
         "exp" (default), "cayley", "expm", "series", "rodrigues", an `Exponential`, or a function (x, m) -> Exp(x) m
         written with numpy functions; see `liehom.action.exponential_of`.
 
+    Attributes
+    ----------
+    infinitesimal : function
+        (x, m) -> rho(x) m.
+    bracket : function
+        (x, y) -> [x, y], as steps of order 3 and more need it.
+
     Examples
     --------
     >>> import numpy as np

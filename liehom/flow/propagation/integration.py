@@ -42,7 +42,8 @@ def integrate(
         points other than 0 whose largest coordinate is below 7e-139 or above 3e138.
     step : Step or str, optional
         The method, or a name of `liehom.methods.step_names`. By default `Taylor` of an order that follows from the
-        tolerances (``Taylor(8)`` for the default ones), and ``LieTaylor(6)`` for fixed step sizes.
+        tolerances (``Taylor(8)`` for the default ones), and ``LieTaylor(6)`` for fixed step sizes. If psi has no Taylor
+        series, as it branches on values, ``RKMK("dop853")``, which calls it on points only.
     args : pytree, optional
         The last argument of psi(m, t, args): numbers and arrays in dicts, lists, tuples and dataclasses, for all
         trajectories; `liehom.PerTrajectory` marks an array with one slice per trajectory.
@@ -86,8 +87,8 @@ def integrate(
     engine : "auto", "numpy", "llvm", "jax" or Engine
         What makes the steps: numpy, or machine code of the step (extra ``llvm`` or ``jax``). "auto" begins with numpy.
         For long runs it goes on by Python code of the traced step, and by machine code if llvmlite is installed;
-        `report` says by which. Events, checkpoints, lattices, extended precision, steps of users, and a psi that has a
-        state or cannot be traced stay with numpy. Name an engine for results that are the same bit for bit.
+        `report.engine` says by which. Events, checkpoints, lattices, extended precision, steps of users, and a psi that
+        has a state or cannot be traced stay with numpy. Name an engine for results that are the same bit for bit.
 
     Returns
     -------
@@ -103,7 +104,7 @@ def integrate(
     TangencyError
         If a field X is not tangent to the orbit.
     SeriesError
-        If the step expands psi, and psi branches on values; `RKMK` only calls it.
+        If a named step expands psi, and psi branches on values; `RKMK` only calls it.
     TraceError
         With the engine "llvm" or "jax", if the step cannot be compiled; the message says why.
     FormatError

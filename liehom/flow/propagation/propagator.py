@@ -12,9 +12,9 @@ from typing import Any, Unpack, final
 import numpy as np
 import numpy.typing as npt
 
-from liehom.base.errors import InputError, displayed
-from liehom.base.pytrees import check_numbers
-from liehom.base.typing import Array, IntegerArray, Pytree, Values
+from liehom.base.errors import InputError, SeriesError, displayed
+from liehom.base.pytrees import PerTrajectory, check_numbers, leaves
+from liehom.base.typing import Array, IntegerArray, Pytree, Real, Values
 from liehom.flow.action.field import GeneratorField, check_point
 from liehom.flow.action.space import Action
 from liehom.flow.door import Representation
@@ -52,6 +52,7 @@ from liehom.flow.run.solution import Solution, checked_path, warn_of_failure
 from liehom.flow.series.arrays import is_jax
 from liehom.flow.steps.conserving import ConservingStep
 from liehom.flow.steps.corrected import CorrectedStep
+from liehom.flow.steps.expansion import flow_series
 from liehom.flow.steps.step import ExponentialLike, Generator, Step, StepLike, as_step
 
 # Engines by name.
@@ -158,7 +159,8 @@ class Propagator:
     field : GeneratorField
     step : Step or str, optional
         The method, or its name (default: `Taylor` of an order that follows from the tolerances of the call,
-        ``Taylor.for_tolerance(rtol + atol)``, and ``LieTaylor(6)`` for fixed step sizes).
+        ``Taylor.for_tolerance(rtol + atol)``, and ``LieTaylor(6)`` for fixed step sizes; ``RKMK("dop853")`` if psi has
+        no Taylor series, as it branches on values).
     args : pytree, optional
         The last argument of psi(m, t, args), where a call gives none.
     exponential, clock, engine
@@ -221,6 +223,7 @@ class Propagator:
         self._new_engine: str | None = engine if isinstance(engine, str) else None
         self._engines: dict[Step, Engine] = {}
         self._defaults: dict[Hashable, Step] = {}
+        self._without_series: Step | None = None  # the default step if psi turns out to have no Taylor series
         self._nominal = checked_clock(clock)
         self._action = _action(field.representation, exponential)
 
@@ -324,6 +327,8 @@ class Propagator:
         """The step of a call with these options."""
         if self.step is not None:
             return self.step
+        if self._without_series is not None:
+            return self._without_series
         if self._new_engine is None and self._engines:
             return next(iter(self._engines))
         wanted: tuple[Any, ...] = (dt is None, rtol, atol)
@@ -369,6 +374,8 @@ class Propagator:
         step = self._step_for(dt=dt, rtol=rtol, atol=atol)
         timed = self.engine.name == "jax" and traces_times(t_span, (dt, t_eval))
         start, orbit_dimension, span, action, bound, args = self._started(t_span, y0, args, step, timed=timed)
+        if self.step is None and not (timed or is_jax(start) or has_series(bound, np.asarray(start), span[0])):
+            step = self._without_series = as_step("dop853")
         least = positive("min_step", min_step, zero=True)
         if timed:
             sizes, times = jax_times(dt, t_eval, start)
@@ -409,7 +416,7 @@ class Propagator:
             start, orbit_dimension = jax_start(rho, y0)
         else:
             args = without_jax(args)
-            start = points_of(y0)
+            start = one_each(points_of(y0), args)
             orbit_dimension = check_point(rho, start, fixed=True)
             action = with_tight_frame(action, step, start, orbit_dimension)
         check_numbers(args, start.shape[:-1])
@@ -444,6 +451,22 @@ def default_step(dt: npt.ArrayLike | None, rtol: float, atol: float) -> Step:
     if dt is not None:
         return LieTaylor(DEFAULT_ORDER)
     return Taylor.for_tolerance(positive("rtol", rtol, zero=True) + atol)
+
+
+def one_each(start: Array, args: Pytree) -> Array:
+    """One initial point (N,) for each trajectory that args have a slice for, (L, N); other points as they are."""
+    counts = {len(x.value) for _, x in leaves(args) if isinstance(x, PerTrajectory) and x.value.ndim}
+    return np.tile(start, (counts.pop(), 1)) if start.ndim == 1 and len(counts) == 1 else start
+
+
+def has_series(field: GeneratorField, points: Array, t: Real | np.floating[Any]) -> bool:
+    """Whether psi has Taylor series at points, on which the default steps call it."""
+    try:
+        with np.errstate(all="ignore"):
+            flow_series(field, points, 1, t)
+    except SeriesError:
+        return False
+    return True
 
 
 def has_fixed_points(problem: Problem) -> bool:

@@ -31,7 +31,8 @@ MESSAGES = {
     EVENT: "A termination event occurred.",
     NOT_FINITE: "The solution is not finite after a step; take smaller steps.",
     PSI: "psi or one of its derivatives is not finite.",
-    CLOCK: "The clock of the corrected step does not run at this step size; take a smaller dt.",
+    CLOCK: "The clock of the corrected step does not run at this step size; take a smaller dt, or LieTaylor if the "
+    "path comes to the cone on which the range condition fails.",
     TOO_SMALL: "The step size that the tolerance asks for is below round-off.",
     IMPLICIT: "The equations of an implicit step could not be solved; take a smaller step size.",
     LINEAR: "The linear algebra of a step failed.",

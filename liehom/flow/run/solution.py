@@ -293,6 +293,23 @@ class Solution(Displayed):
         """Whether the end was reached or a terminal event occurred, with the order of the step kept all the way."""
         return self.status >= 0
 
+    @property
+    def y_end(self) -> Array:
+        """The last point of each trajectory in `y` that is not NaN, an array of shape (..., N).
+
+        Examples
+        --------
+        Two trajectories that take 9 and 24 steps:
+
+        >>> import liehom as lh
+        >>> field = lh.GeneratorField(lh.defining(lh.so(2)), lambda m: m[..., :1] ** 2)
+        >>> sol = lh.integrate(field, (0, 5), [[0.6, 0.8], [3.0, 4.0]], rtol=1e-6)
+        >>> sol.y[..., -1].round(3).tolist(), sol.y_end.round(3).tolist()
+        ([[nan, nan], [0.04, 5.0]], [[0.156, 0.988], [0.04, 5.0]])
+        """
+        last = np.maximum(np.isfinite(self.y).all(axis=-2).sum(axis=-1) - 1, 0)
+        return np.take_along_axis(self.y, np.asarray(last)[..., None, None], axis=-1)[..., 0]
+
     def save(self, path: str | os.PathLike[str], *, force: bool = False) -> None:
         """Write everything but the dense output to an .npz file, whole or not at all.
 

@@ -48,7 +48,7 @@ KNOWN = {
         "sl(2,R)",
         (YES, NO, NO, NO),
     ),
-    "a triangular system": ([[0, 1], [0, 0]], [[[1, 0], [0, 0]]], False, "A2,1", (OPEN, NO, NO, NO)),
+    "a triangular system": ([[0, 1], [0, 0]], [[[1, 0], [0, 0]]], False, "aff(1)", (OPEN, NO, NO, NO)),
     "a spiral": ([[1, -1], [1, 1]], [], False, "R", (OPEN, NO, YES, YES)),
     "two frequencies": (
         [[0, 1, 0, 0], [-1, 0, 0, 0], [0, 0, 0, "sqrt(2)"], [0, 0, "-sqrt(2)", 0]],
@@ -115,6 +115,8 @@ def test_an_open_answer_has_no_truth_value():
     system = lh.controllability(drift=[[1, 0], [0, -1]], controls=[[[0, 1], [1, 0]]])
     with pytest.raises(lh.UndecidedError, match="accessible"):
         bool(system.space)
+    with pytest.raises(lh.InputError, match=r"of dimension system\.algebra\.dimension"):
+        bool(system)
 
 
 @pytest.mark.parametrize(

@@ -161,9 +161,9 @@ def test_wrong_strata_are_refused() -> None:
 def test_names_of_structures() -> None:
     for algebra, name in [
         (lh.so(4), "so(3) + so(3)"), (lh.u(2), "so(3) + R"), (lh.gl(2), "sl(2,R) + R"), (lh.abelian(3), "R^3"),
-        (lh.heisenberg(2), "A5,4"), (lh.euclidean(2), "A3,6"), (lh.euclidean(4), "so(3) + so(3) ⋉ R^4"),
+        (lh.heisenberg(2), "heisenberg(2)"), (lh.euclidean(2), "e(2)"), (lh.euclidean(4), "so(3) + so(3) ⋉ R^4"),
         (lh.so(3, 1), "sl(2,C)"), (lh.abelian(0), "0"),
     ]:  # fmt: skip
         assert structure_name(algebra) == name
     types = lh.orbit_types(lh.defining("so(3,1)"), [[0, 0, 0, 1], [1, 0, 0, 0], [1, 0, 0, 1], [0, 0, 0, 0]])
-    assert {t.structure() for t in types} == {"so(3)", "sl(2,R)", "A3,6", "sl(2,C)"}
+    assert {t.structure() for t in types} == {"so(3)", "sl(2,R)", "e(2)", "sl(2,C)"}

@@ -94,6 +94,19 @@ def test_slices_per_trajectory_are_single_runs(engine: str, options: dict[str, A
         np.testing.assert_allclose(made.y[i], wanted.y, rtol=0, atol=1e-12)
 
 
+@pytest.mark.parametrize("engine", ["numpy", "llvm"])
+def test_one_initial_point_is_that_of_all_slices(engine: str) -> None:
+    for args in (lh.PerTrajectory(INERTIAS), [lh.PerTrajectory(INERTIAS), lh.PerTrajectory([1.0, 2.0, 3.0])]):
+        field = lh.GeneratorField(RHO, lambda m, t, args: -m / (args[0] if isinstance(args, list) else args))
+        made, wanted = (
+            lh.integrate(field, (0, 1), y0, args=args, engine=engine) for y0 in (STARTS[0], STARTS[[0, 0, 0]])
+        )
+        np.testing.assert_array_equal(made.y, wanted.y)
+    with pytest.raises(ShapeError, match=r"args\[0\] has shape \(3,\), args\[1\] has shape \(2,\)"):
+        two = [lh.PerTrajectory([1.0, 2.0, 3.0]), lh.PerTrajectory([1.0, 2.0])]
+        lh.integrate(lh.GeneratorField(RHO, lambda m, t, args: np.stack(args)), (0, 1), STARTS[0], args=two)
+
+
 def test_orbits_of_several_dimensions_keep_their_slices() -> None:
     """Compiled lanes are grouped by the dimension of their orbits."""
     rho = lh.Representation.from_matrices([np.array(x, dtype=float) for x in (ROTATE_12, ROTATE_34)])

@@ -132,11 +132,14 @@ def test_errors_of_psi_reach_the_user() -> None:
         lh.integrate(lh.GeneratorField(RHO, singular_matrix), (0, 1), MANY[0], step=lh.RKMK("rk4"), dt=0.1)
 
 
-def test_a_psi_that_cannot_be_expanded_is_told_before_the_work() -> None:
+@pytest.mark.parametrize("options", [{}, {"dt": 0.1}, {"rtol": 1e-3}])
+def test_a_psi_that_cannot_be_expanded_is_integrated_by_a_runge_kutta_step(options: dict[str, Any]) -> None:
     field = lh.GeneratorField(RHO, lambda m: np.where(m > 0.5, m, 0.0))
     with pytest.raises(SeriesError):
-        lh.integrate(field, (0, 1), MANY[0])
-    assert lh.integrate(field, (0, 1), MANY[0], step=lh.RKMK("rk45")).success
+        lh.integrate(field, (0, 1), MANY[0], step=lh.LieTaylor(4), **options)
+    named, sol = (lh.integrate(field, (0, 1), MANY[0], step=step, **options) for step in ("dop853", None))
+    np.testing.assert_array_equal(sol.y, named.y)
+    assert sol.report.step == named.report.step
 
 
 def test_numpy_warnings_stay_the_users_own() -> None:

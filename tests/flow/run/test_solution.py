@@ -32,6 +32,16 @@ RUNS: dict[str, dict[str, Any]] = {
 
 @pytest.mark.filterwarnings("ignore:status -1")
 @pytest.mark.parametrize("name", RUNS)
+def test_last_points_are_those_of_single_trajectories(name: str) -> None:
+    options = RUNS[name]
+    sol, points = lh.integrate(FIELD, (0, 1), **options), np.atleast_2d(options["y0"])
+    wanted = [sol.y[:, -1]] if len(points) == 1 else [y[:, np.isfinite(y[0])][:, -1] for y in sol.y]
+    assert sol.y_end.shape == np.shape(options["y0"])
+    np.testing.assert_array_equal(np.atleast_2d(sol.y_end), wanted)
+
+
+@pytest.mark.filterwarnings("ignore:status -1")
+@pytest.mark.parametrize("name", RUNS)
 def test_what_is_read_is_what_was_written(name: str, tmp_path: Path) -> None:
     sol: Any = lh.integrate(FIELD, (0, 1), **RUNS[name])
     sol.save(tmp_path / "run.npz")

@@ -1107,7 +1107,7 @@ class LieAlgebra(Displayed, Immutable):
         Raises
         ------
         UndecidedError
-            If no map and no invariant that differs was found.
+            If no map and no invariant that differs was found, or an ideal of dimension above 3 is simple.
 
         Examples
         --------
@@ -1303,7 +1303,7 @@ class LieAlgebra(Displayed, Immutable):
           Killing form of signature (4, 6, 0) (positive, negative, zero)
         >>> print(lh.euclidean(2).describe())
         e(2), dimension 3 over QQ
-          isomorphic to A3,6
+          A3,6 in the tables
           solvable, not nilpotent
           nilradical of dimension 2, centre of dimension 0
           derived series 3 > 2 > 0, lower central series 3 > 2

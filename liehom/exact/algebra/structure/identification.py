@@ -188,6 +188,8 @@ def _with_radical(algebra: LieAlgebra) -> list[str]:
     (factor, radical), center, nilradical = algebra.levi_decomposition(), algebra.center(), algebra.nilradical()
     name = small_name(algebra) if center.dimension < radical.dimension else ""  # else the lines below name it
     lines = [f"isomorphic to {name}"] if name not in ("", algebra.name) else []
+    if (known := familiar_name(name)) != name:
+        lines = [f"{name} in the tables" if algebra.name == known else f"isomorphic to {known}, {name} in the tables"]
     if radical.dimension == algebra.dimension:
         lines.append(_solvable_kind(algebra, nilradical))
     else:
@@ -197,6 +199,18 @@ def _with_radical(algebra: LieAlgebra) -> list[str]:
         lines.append(f"Levi factor: {semisimple_lines(levi)[0]}")
     lines.append(f"nilradical of dimension {nilradical.dimension}, centre of dimension {center.dimension}")
     return lines + _series(algebra)
+
+
+FAMILIAR = {
+    "A2,1": "aff(1)", "A3,1": "heisenberg(1)", "A3,4": "iso(1,1)", "A3,6": "e(2)", "A3,8": "sl(2,R)", "A3,9": "so(3)",
+    "A4,10": "oscillator(1)", "A5,4": "heisenberg(2)",
+}  # fmt: skip
+"""Names of the catalogue by names of the tables."""
+
+
+def familiar_name(name: str) -> str:
+    """A name of the tables with the names that everybody knows, such as 'aff(1)+R' for 'A2,1+R'."""
+    return "+".join(FAMILIAR.get(part, part) for part in name.split("+"))
 
 
 def small_name(algebra: LieAlgebra) -> str:

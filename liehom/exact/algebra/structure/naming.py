@@ -621,6 +621,11 @@ def _searched(first: LieAlgebra, second: LieAlgebra) -> Homomorphism | None:
             up = up.then(error.extension)
             continue
         return None if images is None else Homomorphism(source, target, (basis.inverse() @ images).T)
+    if first.is_semisimple():
+        raise UndecidedError(
+            f"{first!r} and {second!r} are isomorphic over the reals, both {first.real_form()}, but no map is made "
+            "between simple ideals of dimension above 3"
+        )
     raise UndecidedError(f"no isomorphism from {first!r} to {second!r} was found, and no invariant that differs")
 
 

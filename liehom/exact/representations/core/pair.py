@@ -79,6 +79,17 @@ class Pair(Displayed, Immutable):
         """Dimension of G/H, dim g - dim h."""
         return self.subalgebra.codimension
 
+    def over(self, field: Field) -> Pair:
+        """The pair over another field that contains the structure constants and the entries of the subalgebra.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> print(lh.range_condition(lh.pair("so(3)/so(2)").over(lh.RR), [0.6, 0.4, 0.1]))
+        the range condition holds at psi: [h, psi] + R psi has rank 2 of 2 in g/h
+        """
+        return Pair(self.algebra.over(field), self.subalgebra.basis, name=self.name)
+
     def isotropy_matrices(self) -> list[Matrix]:
         """The matrices (d, d) of rho on g/h, acting on columns, one per row of ``subalgebra.quotient().subspace``."""
         if self._isotropy is None:

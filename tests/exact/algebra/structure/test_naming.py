@@ -8,6 +8,7 @@ import pytest
 import liehom as lh
 from liehom.base.errors import InputError, UndecidedError
 from liehom.exact.algebra.constructions.low_dimensional import Row, rows
+from liehom.exact.algebra.structure.identification import FAMILIAR, familiar_name
 from liehom.testing import random_unimodular
 
 FIELDS = [lh.QQ, lh.QQ, lh.QQ, lh.number_field("sqrt(2)"), lh.number_field([-2, 0, 0, 1], (1, 2))]
@@ -138,6 +139,22 @@ def test_names_round_trip_through_the_catalogue(name: str) -> None:
     found = scrambled(lh.catalog.algebra(name), 2).identify()
     assert found.name == name and lh.catalog.algebra(found.name) == lh.catalog.algebra(name)
     assert found.homomorphism.source.dimension == found.homomorphism.rank()
+
+
+@pytest.mark.parametrize("name", FAMILIAR)
+def test_familiar_names_are_those_of_the_same_algebras(name: str) -> None:
+    other = lh.catalog.algebra(FAMILIAR[name])
+    assert lh.catalog.algebra(name).isomorphism(other) is not None
+    assert familiar_name(f"{name}+R") == f"{FAMILIAR[name]}+R"
+    assert lh.structure_name(lh.catalog.algebra(name)) == FAMILIAR[name]
+    if not other.is_semisimple():
+        assert f"isomorphic to {FAMILIAR[name]}, {name} in the tables" in scrambled(other, 3).describe()
+
+
+def test_no_map_is_promised_between_larger_simple_ideals() -> None:
+    assert lh.so(3, 1).is_isomorphic(lh.sl(2, "C"))
+    with pytest.raises(UndecidedError, match="isomorphic over the reals, both sl"):
+        lh.so(3, 1).isomorphism(lh.sl(2, "C"))
 
 
 def test_isomorphism_is_a_map_or_none() -> None:

@@ -63,6 +63,7 @@ REFUSED: dict[str, Callable[[lh.Representation], Any]] = {
     "invariant_complement": lambda rho: SPLIT.over(rho.field).invariant_complement([[1, 0, 0, 1]]),
 }
 OF_PAIRS: dict[str, Callable[[lh.Pair], Any]] = {
+    "over": lambda pair: pair.over(lh.RR).dimension,
     "field": lambda pair: pair.field.degree,
     "dimension": lambda pair: pair.dimension,
     "isotropy_matrices": lambda pair: invariants(pair),
@@ -126,7 +127,7 @@ GEOMETRY: dict[str, tuple[Any, ...]] = {
 
 @pytest.mark.parametrize("name", GEOMETRY)
 def test_the_geometry_of_a_pair_over_floats_is_left_to_exact_numbers(name: str) -> None:
-    floating = lh.Pair(PAIR.algebra.over(lh.RR), PAIR.subalgebra.basis.to_numpy().tolist())
+    floating = PAIR.over(lh.RR)
     with pytest.raises(lh.LiehomError, match="rationalize"):
         getattr(floating, name)(*GEOMETRY[name])
 
@@ -134,7 +135,7 @@ def test_the_geometry_of_a_pair_over_floats_is_left_to_exact_numbers(name: str) 
 def test_whether_a_pair_over_floats_is_primitive_is_left_to_exact_numbers() -> None:
     assert isinstance(PAIR.is_primitive(), bool)
     with pytest.raises(UndecidedError, match="rationalize"):
-        lh.Pair(PAIR.algebra.over(lh.RR), PAIR.subalgebra.basis.to_numpy().tolist()).is_primitive()
+        PAIR.over(lh.RR).is_primitive()
 
 
 @pytest.mark.parametrize("name", ANSWERS)
@@ -151,5 +152,5 @@ def test_a_refusal_names_the_way_to_exact_numbers(name: str) -> None:
 
 @pytest.mark.parametrize("name", OF_PAIRS)
 def test_a_pair_over_floats_agrees_with_the_exact_one(name: str) -> None:
-    floats = lh.Pair(PAIR.algebra.over(lh.RR), PAIR.subalgebra.basis.to_numpy().tolist())
+    floats = PAIR.over(lh.RR)
     agree(numbers(OF_PAIRS[name](floats)), numbers(OF_PAIRS[name](PAIR)))
