@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from liehom.base.errors import InputError, SeriesError, displayed
 from liehom.base.pytrees import PerTrajectory, check_numbers, leaves
-from liehom.base.typing import Array, IntegerArray, Pytree, Real, Values
+from liehom.base.typing import Array, IntegerArray, Pytree, Values
 from liehom.flow.action.field import GeneratorField, check_point
 from liehom.flow.action.space import Action
 from liehom.flow.door import Representation
@@ -374,7 +374,7 @@ class Propagator:
         step = self._step_for(dt=dt, rtol=rtol, atol=atol)
         timed = self.engine.name == "jax" and traces_times(t_span, (dt, t_eval))
         start, orbit_dimension, span, action, bound, args = self._started(t_span, y0, args, step, timed=timed)
-        if self.step is None and not (timed or is_jax(start) or has_series(bound, np.asarray(start), span[0])):
+        if self.step is None and not (timed or is_jax(start) or has_series(bound, np.asarray(start), float(span[0]))):
             step = self._without_series = as_step("dop853")
         least = positive("min_step", min_step, zero=True)
         if timed:
@@ -459,7 +459,7 @@ def one_each(start: Array, args: Pytree) -> Array:
     return np.tile(start, (counts.pop(), 1)) if start.ndim == 1 and len(counts) == 1 else start
 
 
-def has_series(field: GeneratorField, points: Array, t: Real | np.floating[Any]) -> bool:
+def has_series(field: GeneratorField, points: Array, t: float) -> bool:
     """Whether psi has Taylor series at points, on which the default steps call it."""
     try:
         with np.errstate(all="ignore"):
