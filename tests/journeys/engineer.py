@@ -56,8 +56,7 @@ def tracking() -> tuple[list[float], float]:
 
     body = lh.bodies.AttitudeBody(inertia, torque)
     start = body.start(lh.SO3.exp([0.4, -0.3, 2.0]).as_matrix(), velocity=[0.0, 0.1, 0.0])
-    sol = body.integrate((0, 40), np.tile(start, (4, 1)), args=lh.PerTrajectory(gains),
-                         t_eval=[40], rtol=1e-8, atol=1e-10)  # fmt: skip
+    sol = body.integrate((0, 40), start, args=lh.PerTrajectory(gains), t_eval=[40], rtol=1e-8, atol=1e-10)
     target = lh.SO3.exp([0, 0, rate * 40])
     last = body.attitude(sol)[:, -1]
     errors = [float(np.linalg.norm((target.inverse() @ lh.SO3.from_matrix(q)).log())) for q in last]
