@@ -181,6 +181,6 @@ PAGE = (Path(__file__).resolve().parents[2] / "docs" / "command-line.md").read_t
 def test_the_page_of_the_command_line_has_every_command_and_option(name: str) -> None:
     first, *rest = name.split()
     assert f"| `liehom {first}" in PAGE
-    assert all(f"`{word}`" in PAGE for word in rest)
+    assert all(re.search(rf"`{word}[ `]", PAGE) for word in rest)
     options = {option for parameter in COMMANDS[name].params for option in parameter.opts if option.startswith("--")}
     assert [option for option in options - {"--json", "--help"} if not re.search(rf"`{option}[ `]", PAGE)] == []
