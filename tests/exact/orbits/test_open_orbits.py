@@ -8,6 +8,7 @@ from hypothesis import given, settings, strategies as st
 
 import liehom as lh
 from liehom.base.errors import FieldError, UndecidedError
+from liehom.exact.orbits.cone import counted_open_orbits
 from liehom.exact.orbits.range import generic_rank, number_of_points
 from liehom.exact.scalars.polynomial_matrix import LinearForms, RankLoss, rank_losses_on_line
 from liehom.exact.scalars.rational import QQ
@@ -36,6 +37,11 @@ def test_known_orbits(name: str) -> None:
             lh.orbits.open_orbit_count(pair)
     else:
         assert lh.orbits.open_orbit_count(pair) == count
+
+
+def test_determinants_are_known_without_elimination() -> None:
+    reason = "f is the determinant of 3 x 3 matrices, and it has two signs"
+    assert counted_open_orbits(lh.pair("affine(tensor(gl(3),sl(3)))")) == (2, reason)
 
 
 @pytest.mark.parametrize("name", [name for name in CASES if lh.pair(name).dimension <= 7])

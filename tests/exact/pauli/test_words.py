@@ -1,12 +1,14 @@
 """Strings of Pauli words and sums to integers, and what is refused."""
 
 import contextlib
+import random
 from fractions import Fraction
 
 import pytest
 from hypothesis import given, settings, strategies as st
 
 from liehom.base.errors import FieldError, InputError, LiehomError, ParseError
+from liehom.exact.pauli.dynamical import _anticommute, _arf_invariant
 from liehom.exact.pauli.words import encode, read_sums, spell
 from tests.sampling import examples
 
@@ -69,3 +71,20 @@ def test_numbers_of_qubits_that_do_not_fit_are_refused() -> None:
 def test_any_string_is_read_or_refused_by_an_error_of_the_library(text: str) -> None:
     with contextlib.suppress(LiehomError):
         read_sums([text])
+
+
+@pytest.mark.parametrize("qubits", [1, 2, 3])
+@pytest.mark.parametrize("seed", range(12))
+def test_the_arf_invariant_is_the_value_of_most_words(qubits: int, seed: int) -> None:
+    """A quadratic form q with q = 1 on a basis of all words of n qubits has 2^(n-1) (2^n -+ 1) ones."""
+    rng, count = random.Random(seed), 2 * qubits
+    basis: list[int] = []
+    spanned = {0: 0}  # word -> q
+    while len(basis) < count:
+        word = rng.randrange(1, 1 << count)
+        if word not in spanned:
+            basis.append(word)
+            spanned |= {w ^ word: q ^ 1 ^ _anticommute(w, word, qubits) for w, q in spanned.items()}
+    ones = sum(spanned.values())
+    assert _arf_invariant(basis, basis, [], qubits) == (ones > len(spanned) / 2)
+    assert ones in {(1 << qubits - 1) * ((1 << qubits) + sign) for sign in (1, -1)}

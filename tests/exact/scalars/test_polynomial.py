@@ -200,6 +200,11 @@ def test_interval_of_the_largest_root(roots: list[Any], scale: int) -> None:
     assert f(low) * f(high) < 0
 
 
+def test_ends_are_integers_if_no_other_root_is_between_them() -> None:
+    f = from_roots(QQ, [QQ.convert(x) for x in ("-33/10", 0, "13/5", 4)], [])
+    assert largest_real_root_interval(f) == (3, 5)
+
+
 @pytest.mark.parametrize("offset", [0, 7, -7, 10**6, -(10**6)])
 def test_roots_closer_than_floats(offset: int) -> None:
     """Roots offset +- sqrt(2)/10^100, and a third one far below."""
