@@ -37,9 +37,13 @@ def top(m: np.ndarray) -> np.ndarray:
     return -m * np.array([1.0, 0.5, 0.25])
 
 
-def spinning(inertia: np.ndarray) -> lh.GeneratorField:
-    """Rigid bodies, each with its own moments of inertia."""
-    return lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m: -m / inertia)
+def velocity(m: np.ndarray, args: np.ndarray) -> np.ndarray:
+    return -m / args
+
+
+def spinning(inertia: np.ndarray | None = None) -> lh.GeneratorField:
+    """Rigid bodies, each with its own moments of inertia, which are args if they are not given."""
+    return lh.GeneratorField(lh.adjoint(lh.so(3)), velocity if inertia is None else lambda m: -m / inertia)
 
 
 def crossing(t: float, y: np.ndarray) -> np.ndarray:

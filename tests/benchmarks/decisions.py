@@ -1,6 +1,6 @@
 """Milliseconds to read, decide and verify a pair, as rows of the table in docs/performance-exact.md.
 
-    python -m tests.benchmarks.decisions [PAIR ...]
+python -m tests.benchmarks.decisions [PAIR ...]
 """
 
 import json

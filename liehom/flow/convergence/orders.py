@@ -322,7 +322,7 @@ def observed_order(
         raise InputError(f"the step size {sizes[0]} is longer than t_span = {t_span!r}: it would be shortened")
     exact = reference_for(field, start, first, reference)
     options = {"step": step, "exponential": exponential, "clock": clock, "engine": engine}
-    problems = [EnsembleProblem(field, (first, last), start, {}, {**options, "dt": h}) for h in sizes]
+    problems = [EnsembleProblem(field, (first, last), start, {**options, "dt": h}) for h in sizes]
     runs = all_solved(problems, executor, store, retries)
     if all(run.status == -1 for run in runs):
         raise ConvergenceError(

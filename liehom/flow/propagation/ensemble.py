@@ -5,10 +5,10 @@ from __future__ import annotations
 import dataclasses
 import os
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import partial
 from itertools import pairwise
-from typing import Any, NamedTuple, TypeAlias, Unpack
+from typing import Any, NamedTuple, Unpack
 
 import numpy as np
 import numpy.typing as npt
@@ -24,7 +24,7 @@ from liehom.flow.action.fingerprint import events_by_name, fingerprint, stable_r
 from liehom.flow.action.space import Action
 from liehom.flow.engines.arguments import EnsembleOptions, least_atol
 from liehom.flow.propagation.integration import integrate
-from liehom.flow.propagation.propagator import default_step, without_order_warning
+from liehom.flow.propagation.propagator import default_step, has_series, without_order_warning
 from liehom.flow.run.events import Events
 from liehom.flow.run.options import (
     ATOL,
@@ -160,17 +160,13 @@ def _conserved(reports: Sequence[ConservationReport]) -> ConservationReport:
 
 ARRAYS = ("dt", "t_eval")  # the options of `integrate` that are arrays
 
-Fields: TypeAlias = GeneratorField | Callable[..., GeneratorField]
-"""A field, or a function of parameters that returns one."""
-
 
 class EnsembleProblem(NamedTuple):
     """The arguments of a call of `integrate`, for a whole ensemble or for the rows that one worker gets."""
 
-    field: Fields
+    field: GeneratorField
     t_span: Iterable[float] | Span
     start: Array
-    parameters: dict[str, npt.NDArray[Any]]
     options: dict[str, Any]
 
     def task(self, rows: tuple[int, int]) -> EnsembleProblem:
@@ -185,8 +181,7 @@ class EnsembleProblem(NamedTuple):
                 raise ShapeError(f"dt has shape {np.shape(dt)}, the ensemble {self.start.shape[:-1]}") from None
         if "args" in options:
             options = {**options, "args": _rows(options["args"], here)}
-        parameters = {name: array[here] for name, array in self.parameters.items()}
-        return self._replace(start=self.start[here], parameters=parameters, options=options)
+        return self._replace(start=self.start[here], options=options)
 
     def ends(self) -> tuple[float, float]:
         """Initial and final time as floats; (0, 0) if they are not numbers, which `integrate` rejects."""
@@ -198,11 +193,8 @@ class EnsembleProblem(NamedTuple):
 
     def made(self) -> GeneratorField:
         """The field of these trajectories, with its args if they are given."""
-        field = self.field if isinstance(self.field, GeneratorField) else self.field(**self.parameters)
-        if not isinstance(field, GeneratorField):
-            raise InputError(f"field(**parameters) returned {field!r}, expected a GeneratorField")
         args = self.options.get("args")
-        return field if args is None else field.with_args(args)
+        return self.field if args is None else self.field.with_args(args)
 
     def check(self, bounds: list[tuple[int, int]]) -> GeneratorField:
         """The field of the whole ensemble, after a test that psi of a chunk equals psi of the whole on its rows."""
@@ -234,7 +226,6 @@ class EnsembleProblem(NamedTuple):
         others = {
             "options": digest(*texts, *(np.asarray(options[name]) for name in ARRAYS if options.get(name) is not None)),
             "chunk": digest(repr(bounds)),
-            "parameters": digest(*(x for item in sorted(self.parameters.items()) for x in item)),
         }
         look, (begin, end) = None, np.array(self.ends())
         if events is not None:
@@ -271,7 +262,7 @@ def all_solved(
 def _whole_only(rows: tuple[int, int]) -> ShapeError:
     return ShapeError(
         f"psi of the trajectories {rows[0]} to {rows[1] - 1} is not what it is within the whole ensemble: does it "
-        "carry one parameter for each trajectory? Pass a function that makes the field, and parameters={'name': array}"
+        "hold a number for each trajectory? Pass it as args=PerTrajectory(array) to psi(m, t, args)"
     )
 
 
@@ -305,11 +296,10 @@ class EnsemblePart(NamedTuple):
 
 
 def integrate_ensemble(
-    field: Fields,
+    field: GeneratorField,
     t_span: Iterable[float],
     y0: npt.ArrayLike,
     *,
-    parameters: Mapping[str, npt.ArrayLike] | None = None,
     executor: ExecutorLike = None,
     chunk: int = CHUNK,
     store: str | os.PathLike[str] | None = None,
@@ -321,13 +311,9 @@ def integrate_ensemble(
 
     Parameters
     ----------
-    field : GeneratorField or callable
-        The field; or, if trajectories have their own parameters, a function ``field(**parameters)`` that returns the
-        field of a chunk, called with the rows of the parameters that belong to it.
+    field : GeneratorField
     t_span, y0
         As for `integrate`; y0 has shape (n, ..., N) and is cut along its first axis.
-    parameters : mapping of str to array of shape (n, ...), optional
-        Only with a function as `field`.
     executor : Executor or callable, optional
         Any `concurrent.futures.Executor`: of processes, of threads, of a dask client (``client.get_executor()``), of
         mpi4py, ...; or a function without parameters that returns one, which is called again when workers die.
@@ -382,15 +368,7 @@ def integrate_ensemble(
     parts: list[EnsemblePart] = []
     with Progress(progress) as shown:
         for part in ensemble_parts(
-            field,
-            t_span,
-            y0,
-            parameters=parameters,
-            executor=executor,
-            chunk=chunk,
-            store=store,
-            retries=retries,
-            **options,
+            field, t_span, y0, executor=executor, chunk=chunk, store=store, retries=retries, **options
         ):
             parts.append(part)
             shown.update(lambda: sum(part.last - part.first for part in parts) / len(starts))
@@ -402,11 +380,10 @@ def integrate_ensemble(
 
 
 def ensemble_parts(
-    field: Fields,
+    field: GeneratorField,
     t_span: Iterable[float],
     y0: npt.ArrayLike,
     *,
-    parameters: Mapping[str, npt.ArrayLike] | None = None,
     executor: ExecutorLike = None,
     chunk: int = CHUNK,
     store: str | os.PathLike[str] | None = None,
@@ -417,7 +394,7 @@ def ensemble_parts(
 
     Parameters
     ----------
-    field, t_span, y0, parameters, executor, chunk, store, retries, **options
+    field, t_span, y0, executor, chunk, store, retries, **options
         As for `integrate_ensemble`.
 
     Returns
@@ -445,10 +422,13 @@ def ensemble_parts(
         raise ShapeError(f"y0 has shape {start.shape}, expected an ensemble, (n, ..., N); one run is `integrate`'s")
     if isinstance(chunk, bool) or not isinstance(chunk, int | np.integer) or chunk < 1:
         raise InputError(f"chunk is {chunk!r}, expected the number of trajectories of a task")
-    arrays = _checked(parameters, field, len(start))
-    problem = EnsembleProblem(field, t_span, start, arrays, dict(_with_step(options)))
+    if not isinstance(field, GeneratorField):
+        raise InputError(f"expected a GeneratorField, got {field!r}: make one by liehom.GeneratorField(rho, psi)")
+    problem = EnsembleProblem(field, t_span, start, dict(_with_step(options)))
     bounds = _bounds(len(start), int(chunk))
     one_field = problem.check(bounds)
+    if options.get("step") is None and not has_series(one_field, start, problem.ends()[0]):
+        problem.options["step"] = as_step("dop853")
     kept = None if store is None else open_store(store, problem.fingerprint(one_field, bounds))
     done = frozenset() if kept is None else kept.names()
     todo = [rows for rows in bounds if _name(rows) not in done]
@@ -510,23 +490,6 @@ def _with_step(options: EnsembleOptions) -> EnsembleOptions:
         atol = options.get("atol", ATOL)
         with_step["step"] = default_step(None, options.get("rtol", RTOL), least_atol(atol, np.size(atol)))
     return with_step
-
-
-def _checked(parameters: Mapping[str, npt.ArrayLike] | None, field: Fields, n: int) -> dict[str, npt.NDArray[Any]]:
-    """The parameters as arrays of n rows each."""
-    if parameters is None:
-        if not isinstance(field, GeneratorField) and not callable(field):
-            raise InputError(f"expected a GeneratorField, got {field!r}: make one by liehom.GeneratorField(rho, psi)")
-        return {}
-    if isinstance(field, GeneratorField):
-        raise InputError("parameters go to a function field(**parameters) that makes the field; this one is made")
-    arrays = {str(name): np.asarray(value) for name, value in parameters.items()}
-    for name, array in arrays.items():
-        if array.ndim == 0 or len(array) != n:
-            raise ShapeError(
-                f"the parameter {name!r} has shape {array.shape}, expected one row per trajectory, ({n}, ...)"
-            )
-    return arrays
 
 
 def _bounds(n: int, chunk: int) -> list[tuple[int, int]]:

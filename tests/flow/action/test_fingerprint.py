@@ -99,7 +99,7 @@ def mutated(rng: np.random.Generator, numbers: list[float]) -> list[float]:
 
 
 def marked(field: lh.GeneratorField, start: Any) -> str:
-    return EnsembleProblem(field, SPAN, start, {}, {}).fingerprint(field, [])
+    return EnsembleProblem(field, SPAN, start, {}).fingerprint(field, [])
 
 
 @pytest.mark.parametrize("place", PLACES)
@@ -143,7 +143,7 @@ def test_steps_and_events_are_compared_too() -> None:
     energy = [lambda m: (m * m).sum(axis=-1), lambda m: 2.0 * (m * m).sum(axis=-1)]
     height = [lambda t, y: y[..., 0], lambda t, y: y[..., 1]]
     options = [{"step": lh.Conserving("rk4", energy[i]), "events": [height[j]]} for i, j in ((0, 0), (1, 0), (0, 1))]
-    marks = [EnsembleProblem(field, SPAN, START, {}, given).fingerprint(field, []) for given in options]
+    marks = [EnsembleProblem(field, SPAN, START, given).fingerprint(field, []) for given in options]
     assert differing(marks[0], marks[1]) == "step: _source: code"
     assert differing(marks[0], marks[2]) == "event 0: code"
 

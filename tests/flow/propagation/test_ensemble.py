@@ -81,18 +81,19 @@ def test_parameters_go_with_their_trajectories(pool: Executor) -> None:
     inertia = np.random.default_rng(2).uniform(1, 2, size=(13, 3))
     whole = lh.integrate(work.spinning(inertia), (0, 1), starts(), t_eval=[1.0])
     for executor in (None, pool):
+        args = lh.PerTrajectory(inertia)
         made = lh.integrate_ensemble(
-            work.spinning, (0, 1), starts(), parameters={"inertia": inertia}, executor=executor, chunk=4, t_eval=[1.0]
+            work.spinning(), (0, 1), starts(), args=args, executor=executor, chunk=4, t_eval=[1.0]
         )
         same(made, whole, calls=False)
 
 
 def test_psi_with_one_parameter_per_trajectory_is_refused() -> None:
     inertia = np.random.default_rng(2).uniform(1, 2, size=(13, 3))
-    with pytest.raises(ShapeError, match="parameters="):
+    with pytest.raises(ShapeError, match="args=PerTrajectory"):
         lh.integrate_ensemble(work.spinning(inertia), (0, 1), starts(), chunk=4)
     hidden = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m: -m / inertia[: len(m)])
-    with pytest.raises(ShapeError, match="parameters="):
+    with pytest.raises(ShapeError, match="args=PerTrajectory"):
         lh.integrate_ensemble(hidden, (0, 1), starts(), chunk=4)
 
 
@@ -189,9 +190,9 @@ def test_progress() -> None:
 
 @pytest.mark.parametrize(("change", "message"), [
     ({"chunk": 0}, "chunk is 0"), ({"chunk": 2.5}, "chunk is 2.5"), ({"dense_output": True}, "take t_eval"),
-    ({"checkpoint": "a.npz"}, "give store"), ({"parameters": {"inertia": 1}}, "this one is made"),
-    ({"field": work.spinning, "parameters": {"inertia": np.ones((12, 3))}}, "one row per trajectory"),
-    ({"field": work.square, "parameters": {"x": np.ones(13)}}, "expected a GeneratorField"),
+    ({"checkpoint": "a.npz"}, "give store"),
+    ({"field": work.spinning(), "args": lh.PerTrajectory(np.ones((12, 3)))}, "leading axes must be those"),
+    ({"field": work.square}, "expected a GeneratorField"),
     ({"field": 3}, "expected a GeneratorField"), ({"y0": [0.6, 0.0, 0.8]}, "expected an ensemble"),
     ({"y0": np.zeros((0, 3))}, "expected an ensemble"), ({"dt": [0.1, 0.2]}, "dt has shape"),
     ({"t_span": "ab", "dt": 0.1}, "t_span"), ({"no_such_option": 1}, "no_such_option"),
