@@ -74,13 +74,6 @@ def variants() -> dict[str, Call]:
     add("rodas4, adapted", "rodas4", rtol=1e-6)
     add("fixed, an event", dt=0.1, events=lambda t, m: m[..., 2])
     add("adapted, an event", rtol=1e-9, events=lambda t, m: m[..., 2])
-    go = taylor.bind(START, dt=0.1)
-
-    def bound(a: float, b: float, y: Any) -> Any:
-        go((a, b))
-        return y
-
-    made["bind, fixed"] = bound
     field = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m, t, args: -m * args["rates"])
     with_args = lh.Propagator(field, lh.Taylor(8), engine="llvm")
     made["fixed, args"] = lambda a, b, y: with_args((a, b), y, dt=0.1, args={"rates": RATES}).y[:, -1]

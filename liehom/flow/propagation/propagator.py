@@ -231,47 +231,17 @@ class Propagator:
         self, t_span: Iterable[float] | Span, y0: npt.ArrayLike, *, args: Pytree = None, **options: Unpack[CallOptions]
     ) -> Solution:
         """The trajectories from y0, a `Solution`; parameters and options are those of `integrate`."""
-        return self._called(t_span, y0, args, options, stacklevel=4)
-
-    def _called(
-        self, t_span: Iterable[float] | Span, y0: npt.ArrayLike, args: Pytree, options: CallOptions, *, stacklevel: int
-    ) -> Solution:  # fmt: skip
-        """The solution of a call: of a form that the engine knows, or from the beginning."""
         engine = self.engine if self.step is not None else self._engine_for(self._step_for(**options))
         again: Callable[..., Solution | None] | None = getattr(engine, "again", None)
         solution = None if again is None else again(t_span, y0, options, self._args_for(args))
         if solution is None:
             problem = self.problem(t_span, y0, args=args, **options)
-            return warned(self.solve(problem), problem, stacklevel=stacklevel)
+            return warned(self.solve(problem), problem, stacklevel=3)
         return solution
 
     def solve(self, problem: Problem) -> Solution:
         """The solution of a `problem` of this propagator, by its engine; by numpy if the group fixes a point."""
         return (NumpyEngine() if has_fixed_points(problem) else self._engine_for(problem.step)).solve(problem)
-
-    def bind(
-        self, y0: npt.ArrayLike, *, args: Pytree = None, **options: Unpack[CallOptions]
-    ) -> Callable[..., Solution]:
-        """The call from y0 as a function of time span and args, for inner loops.
-
-        Parameters and options are those of a call.
-
-        Examples
-        --------
-        >>> import liehom as lh
-        >>> body = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m, t, args: -m / args)
-        >>> go = lh.Propagator(body, "rk4").bind([0.6, 0.0, 0.8], dt=0.1)
-        >>> [go((0, 1), np.array([1.0, 2.0, third])).status for third in (3.0, 4.0)]
-        [0, 0]
-        """
-        check_option_names(set(options) - set(CallOptions.__annotations__))
-        points, own = y0 if is_jax(y0) else points_of(y0), [args]
-
-        def bound(t_span: Iterable[float] | Span, args: Pytree = None) -> Solution:
-            own[0] = args if own[0] is None else own[0]
-            return self._called(t_span, points, own[0] if args is None else args, options, stacklevel=4)
-
-        return bound
 
     def inspect(self, y0: npt.ArrayLike, t: float = 0.0, *, args: Pytree = None) -> Inspection:
         """Orders, ranks and singular values of the step at points, an `Inspection`; no step is made.

@@ -177,12 +177,10 @@ def test_a_run_that_fails_warns_once_whoever_makes_it() -> None:
     field, message = singular(1.0), r"^status -1: "
     how: dict[str, Any] = {"dt": 0.1}
     propagator = lh.Propagator(field, lh.RKMK("rk4"))
-    bound = propagator.bind(MANY[0], **how)
     for call in (
         lambda: lh.integrate(field, (0, 1), MANY[0], step="rk4", **how),
         lambda: propagator((0, 1), MANY[0], **how),
-        lambda: bound((0, 1)),
-        lambda: bound((0, 1)),
+        lambda: propagator((0, 1), MANY[0], **how),
         lambda: lh.integrate_ensemble(field, (0, 1), MANY, chunk=2, step="rk4", **how),
     ):
         with pytest.warns(RuntimeWarning, match=message) as caught:
