@@ -37,6 +37,14 @@ WEIGHTS: tuple[tuple[int, int, int, str], ...] = (
         "metrics by their matrix, for geometers; is_unimodular, for lecturers; loops of large steps are called again "
         "at once, for integration by tight tolerances; functions of rotations beside SO3 and SE3 left",
     ),
+    (
+        93731,
+        49715,
+        308,
+        "calls of one trajectory at half the cost, for loops over spans; last points of ensembles, one start for all "
+        "slices, functions that branch, names that everybody knows, for those who come from scipy or from textbooks; chains "
+        "of branching rules, for physicists; Propagator.bind and the parameters of integrate_ensemble left",
+    ),
 )
 """Lines, statements (of Python, without docstrings) and files of Python and stubs, the latest last, and for whom."""
 SLACK = 0.005  # what has become lighter by more than this share is written down

@@ -17,6 +17,7 @@ from liehom.exact.scalars.complex_parts import sympy_number
 from liehom.exact.scalars.exact_field import ExactMatrix
 from liehom.exact.scalars.field import Matrix, Scalar
 from liehom.exact.scalars.floating import FloatMatrix
+from liehom.exact.scalars.function_field import RationalFunction
 from liehom.exact.scalars.grammar import evaluate, parse
 from liehom.exact.scalars.number_fields import AlgebraicNumber
 from liehom.exact.scalars.rational import QQ
@@ -647,6 +648,10 @@ def to_sympy(obj: object) -> SympyObject:
         return [_matrix(a) for a in obj.matrices]
     if isinstance(obj, AlgebraicNumber):
         return sympy_number(obj.field, obj)
+    if isinstance(obj, RationalFunction):
+        import sympy
+
+        return sympy.sympify(str(obj))
     if isinstance(obj, int | float) or type(obj) is type(QQ.one):
         import sympy
 

@@ -83,8 +83,8 @@ def damage_table() -> str:
 
     sums = [sum(row[key] for row in found.values()) for key in ("noticed", "identical", "believed")]
     return (
-        f"{data['count']:,} damages, seed {data['seed']} (`tests/campaigns/damage.py`). Noticed: {sums[0]:,}; read "
-        f"with the same content: {sums[1]:,}; read with another content: {sums[2]:,}. The cells have these three "
+        f"{data['count']:,} damages, seed {data['seed']} (`tests/campaigns/damage.py`). {sums[0]:,} were "
+        f"noticed, {sums[1]:,} left the content as it was, and {sums[2]:,} were believed. The cells have these three "
         "numbers.\n\n"
     ) + table(["file", *damages], [[file, *(cell(file, damage) for damage in damages)] for file in files])
 

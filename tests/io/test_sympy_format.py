@@ -22,6 +22,14 @@ def test_the_array_of_an_algebra_goes_out_and_in() -> None:
         assert lh.LieAlgebra(sympy.Array(array.tolist())) == algebra
 
 
+def test_functions_of_the_parameters_of_metrics_go_out() -> None:
+    ricci = lh.pair("SU(3)/T^2").invariant_metrics().generic().ricci_parameters()
+    x = sympy.symbols("x1:4")
+    for i, value in enumerate(ricci):
+        a, b, c = (x[(i + k) % 3] for k in range(3))
+        assert sympy.simplify(io.to_sympy(value) - (a**2 - b**2 - c**2 + 6 * b * c) / (b * c)) == 0
+
+
 def test_entries_of_the_array() -> None:
     array = io.to_sympy(lh.so(3))
     assert [array[0, 1, 2], array[1, 0, 2], array[0, 1, 1]] == [1, -1, 0]

@@ -90,7 +90,10 @@ def test_real_algebras_of_dimension_three_are_found_in_ugly_bases() -> None:
     lecturer.three_dimensional()
 
 
-@pytest.mark.parametrize("peer", ["engineer_peer", "quantum_physicist_peer", "researcher_peer", "lecturer_peer"])
+READERS = ["engineer", "quantum_physicist", "geometer", "particle_physicist", "researcher", "lecturer"]
+
+
+@pytest.mark.parametrize("peer", [f"{reader}_peer" for reader in READERS])
 def test_the_way_of_the_peers_runs(peer: str) -> None:
     pytest.importorskip("matplotlib")
     runpy.run_path(str(Path(__file__).with_name(f"{peer}.py")), run_name="__main__")

@@ -146,7 +146,10 @@ def _scalars(first: Term, extra: Term, size: int) -> IntegerArray:
         same = len(ground) == len(extra.items) == 2 and extra.head == "sl" and scalar_parameters(extra) == ground
         if (ground == (-1, -1) and extra == Term("sp", (1,))) or (same and extra.items[0] == 1):
             return units
-    raise CatalogError(f"{extra} does not act by scalars that commute with {first}; for blocks write blocks(X,Y)")
+    raise CatalogError(
+        f"{extra} does not act by scalars that commute with {first}; for blocks write blocks(X,Y), "
+        "and for a subalgebra of a product lh.Pair(lh.direct_sum(g, g), rows)"
+    )
 
 
 def _cleared(term: Term) -> list[int]:

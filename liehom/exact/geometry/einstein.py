@@ -96,7 +96,7 @@ class EinsteinMetrics:
 
     def __repr__(self) -> str:
         number = f"{len(self)}" if self.complete else f"at least {len(self)}"
-        return f"<{number} invariant Einstein metrics, {self.kinds} kinds>"
+        return f"<{number} invariant Einstein metrics, {self.kinds} kind{'s' * (self.kinds != 1)}>"
 
 
 def einstein_metrics(metrics: InvariantMetrics) -> EinsteinMetrics:

@@ -262,7 +262,10 @@ class InvariantMetric:
         if isinstance(self.field, ExactField):
             form = self.field.matrix(self._matrix, (d, d))
             if form.rank() < d:
-                raise SingularError(f"the form with the parameters {displayed(self.parameters)} is degenerate")
+                raise SingularError(
+                    f"the form with the parameters {displayed(self.parameters)} is degenerate; they are the "
+                    "coefficients of the forms in `basis`, not all of which are positive if summands are equivalent"
+                )
             return np.asarray(form.inverse())
         # the inverse is an invariant form on the dual: r linear equations for its parameters, independent at one point
         dual, ring = self.metrics._dual, self.metrics.split.field

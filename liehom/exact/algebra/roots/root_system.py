@@ -165,6 +165,11 @@ def _parse_simple(name: str) -> tuple[str, int]:
             return letter, rank
     if name != name.upper() and re.fullmatch(r"[A-G][1-9][0-9]*", name.upper()):
         raise CatalogError(f"{displayed(name)} is not the type of a simple Lie algebra: write {name.upper()!r}")
+    if (form := re.fullmatch(r"(su|sl|so|sp)\((\d{1,4})\)", name)) is not None:
+        n = int(form[2])
+        kind = f"A{n - 1}" if form[1][1] in "ul" else f"C{n}" if form[1] == "sp" else f"{'DB'[n % 2]}{n // 2}"
+        if int(kind[1:]) >= _LOWEST_RANK[kind[0]]:
+            raise CatalogError(f"{displayed(name)} is an algebra, and a type was expected: write {kind!r}")
     known = "A1, A2, ...; B1, ...; C1, ...; D3, ...; E6, E7, E8, F4, G2"
     raise CatalogError(f"{displayed(name)} is not the type of a simple Lie algebra; known: {known}")
 

@@ -281,7 +281,15 @@ class BranchingRule:
             terms += [replace(term, multiplicity=term.multiplicity - taken)] if term.multiplicity > taken else []
         return Branching(self, tuple(terms))
 
-    def __call__(self, module: Sequence[int] | str | Representation) -> Branching:
+    def __call__(self, module: Sequence[int] | str | Representation | Branching) -> Branching:
+        if isinstance(module, Branching):  # the next step of a chain of subalgebras
+            if " + ".join(module.rule.factors) != self.type or module.rule.charge_rows:
+                raise InputError(f"this rule takes modules of {self.type}, got those of {displayed(module.rule)}")
+            weights = Counter[Weight]()
+            for term in module.terms:
+                for mu, n in character(self.type, sum(term.highest_weights, ())).items():
+                    weights[mu] += n * term.multiplicity
+            return self.restricted(weights)
         if isinstance(module, Representation):
             if self._data is None or module.algebra != self._data.algebra:
                 source = f"the type {self.type}" if self._data is None else repr(self._data.algebra)

@@ -107,8 +107,13 @@ def root_system_of(system: RootSystem | str) -> RootSystem:
     return roots
 
 
-def checked_weight(space: WeightSpace, weight: Sequence[int], *, dominant: bool = True) -> Weight:
+def checked_weight(space: WeightSpace, weight: Sequence[int] | str, *, dominant: bool = True) -> Weight:
     """A weight as a tuple of ints, after a check."""
+    if isinstance(weight, str):
+        raise InputError(
+            f"expected a highest weight of {space.rank} integers, got the name {weight!r}: names of modules "
+            "are read by branching rules only"
+        )
     values: list[Any] = list(weight)
     if len(values) != space.rank:
         raise ShapeError(f"the weight {values} has {len(values)} coordinates, the rank is {space.rank}")

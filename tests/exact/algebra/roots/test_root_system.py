@@ -166,6 +166,16 @@ def test_unknown_type_raises_catalog_error(name):
         root_system(name)
 
 
+@pytest.mark.parametrize(
+    ("name", "kind"), [("su(4)", "A3"), ("sl(2)", "A1"), ("so(9)", "B4"), ("so(10)", "D5"), ("sp(3)", "C3")]
+)
+def test_the_name_of_an_algebra_is_not_a_type(name, kind):
+    with pytest.raises(lh.errors.CatalogError, match=f"write '{kind}'"):
+        root_system(name)
+    with pytest.raises(lh.errors.CatalogError, match="known: A1"):
+        root_system("so(2)")
+
+
 def test_vector_of_wrong_length_raises_shape_error():
     system = root_system("B2")
     with pytest.raises(lh.errors.ShapeError):

@@ -246,6 +246,21 @@ def test_bad_input_is_refused(arguments: tuple[Any, ...], error: type[Exception]
         lh.branching_rule(*arguments)
 
 
+@pytest.mark.parametrize("weight", [[1, 0, 0, 0, 0], [0, 1, 0, 0, 0], [0, 0, 0, 1, 0], [1, 0, 0, 0, 1]])
+def test_a_chain_of_rules_is_the_rule_of_the_chain(weight: list[int]) -> None:
+    """so(10) > so(9) > so(8) is so(10) > so(8) + u(1) without the charge."""
+    chain = lh.branching_rule("B4", "so(8)")(lh.branching_rule("D5", "so(9)")(weight))
+    at_once = Counter[Any]()
+    for term in lh.branching_rule("D5", "so(8)+u(1)")(weight).terms:
+        at_once[term.highest_weights] += term.multiplicity
+    # the spinors of so(8) are exchanged by a symmetry of its diagram
+    swapped = Counter({(tuple(x[0][i] for i in (0, 1, 3, 2)),): n for x, n in at_once.items()})
+    assert Counter({term.highest_weights: term.multiplicity for term in chain.terms}) in (at_once, swapped)
+    charged = lh.branching_rule("D5", "su(5)+u(1)")
+    with pytest.raises(InputError, match="takes modules of A4, got those of"):
+        lh.branching_rule("A4", "su(4)+u(1)")(charged("16"))
+
+
 def test_bad_calls_of_a_rule_are_refused() -> None:
     rule = lh.branching_rule("A4", "su(3)+su(2)+u(1)")
     with pytest.raises(InputError, match="does not name a module"):
@@ -263,3 +278,5 @@ def test_bad_calls_of_a_rule_are_refused() -> None:
             function("A1 + A1", [1, 0])
     with pytest.raises(InputError, match="degree"):
         R.symmetric_power_decomposition("A1", [1], -1)
+    with pytest.raises(InputError, match="names of modules are read by branching rules only"):
+        lh.tensor_product_decomposition("D5", "16", "16")
