@@ -42,8 +42,8 @@ WEIGHTS: tuple[tuple[int, int, int, str], ...] = (
         49715,
         308,
         "calls of one trajectory at half the cost, for loops over spans; last points of ensembles, one start for all "
-        "slices, functions that branch, names that everybody knows, for those who come from scipy or from textbooks; chains "
-        "of branching rules, for physicists; Propagator.bind and the parameters of integrate_ensemble left",
+        "slices, functions that branch, names that everybody knows, for those who come from scipy or from textbooks; "
+        "chains of branching rules, for physicists; Propagator.bind and the parameters of integrate_ensemble left",
     ),
 )
 """Lines, statements (of Python, without docstrings) and files of Python and stubs, the latest last, and for whom."""
