@@ -12,7 +12,6 @@ that changes its own state or does not repeat its value, and a step that a user 
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Mapping
 from importlib.util import find_spec
 from typing import Any, final
@@ -134,8 +133,7 @@ class _Ladder:
         """Trace and write the code of a run, if that is possible; numpy makes the steps of all others."""
         store = self._engine.stores[kind]
         try:
-            with warnings.catch_warnings():
-                warnings.simplefilter("ignore")
+            with np.errstate(all="ignore"):  # unlike warnings.catch_warnings, it does not touch other threads
                 if not self._engine.repeats(self._problem):
                     return False
                 compiled = CompiledRun(self._problem, run, store, most=STEPS_AT_ONCE)

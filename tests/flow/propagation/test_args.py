@@ -53,8 +53,8 @@ STEPS: dict[str, lh.Step] = {
 @pytest.mark.parametrize("step", STEPS)
 @pytest.mark.parametrize("options", [{"dt": 0.1}, {"rtol": 1e-5}], ids=["fixed", "adapted"])
 def test_in_numpy_args_are_what_psi_closes_over_bit_for_bit(step: str, options: dict[str, Any]) -> None:
-    wanted = lh.integrate(closed(ARGS), (0, 1), STARTS, step=STEPS[step], **options)
-    made = lh.integrate(FIELD, (0, 1), STARTS, step=STEPS[step], args=ARGS, **options)
+    wanted = lh.integrate(closed(ARGS), (0, 1), STARTS, step=STEPS[step], engine="numpy", **options)
+    made = lh.integrate(FIELD, (0, 1), STARTS, step=STEPS[step], args=ARGS, engine="numpy", **options)
     np.testing.assert_array_equal(made.y, wanted.y)
     np.testing.assert_array_equal(made.t, wanted.t)
 
