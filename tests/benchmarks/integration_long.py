@@ -12,7 +12,7 @@ from tests.benchmarks.integration_problems import Problem, chain, quartic, rigid
 
 COUNT = 16
 SETTINGS = {
-    "E4": 0.1, "T8": 0.4, "C2": 0.8, "exact orbit": 0.8, "heyoka.py": 2.22e-16, "scipy DOP853": 1e-11,
+    "E4": 0.1, "T8": 0.4, "S16": 0.8, "C2": 0.8, "exact orbit": 0.8, "heyoka.py": 2.22e-16, "scipy DOP853": 1e-11,
     "numba RK4 by hand": 0.02,
 }  # fmt: skip
 

@@ -63,11 +63,9 @@ def compiled(step: Any, width: int, *, nominal: bool, points: Any) -> Callable[[
 
     def run(x: Any, count: int) -> None:
         fields: dict[str, Any] = {"start": x.copy(), "constants": kernel.run_values(values), "end": count}
+        fields |= {"stops": np.full(2, 1e15), "last_stop": 0, "out": np.empty((3, *x.shape))}
         if nominal:
-            fields |= {"sizes": np.full(count, H), "times": np.zeros(count), "codes": np.full(count, -1)}
-            fields["repeats"] = np.full(count, count)
-        else:
-            fields |= {"stops": np.full(2, 1e15), "last_stop": 0, "out": np.empty((3, *x.shape))}
+            fields |= {"step_size": H, "total": count}
         state = kernel.packed(x.shape[1], {"x": x, "alive": 1.0} | ({} if nominal else {"h": H}))
         kernel(state, **fields)
         x[:] = state[: len(x)]
