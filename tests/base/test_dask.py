@@ -41,11 +41,8 @@ def test_ensemble_on_dask_equals_the_serial_one(client: Any, tmp_path: Path) -> 
 
 def test_functions_without_a_name(client: Any) -> None:
     inertia = np.random.default_rng(3).uniform(1, 2, size=(13, 3))
-
-    def field(inertia: Any) -> lh.GeneratorField:
-        return lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m: -m / inertia)
-
-    call: dict[str, Any] = {"parameters": {"inertia": inertia}, "chunk": 4, "dt": 0.25}
+    field = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m, t, args: -m / args)
+    call: dict[str, Any] = {"args": lh.PerTrajectory(inertia), "chunk": 4, "dt": 0.25}
     with client.get_executor() as executor:
         made = lh.integrate_ensemble(field, (0, 1), starts(), executor=executor, **call)
     same(made, lh.integrate_ensemble(field, (0, 1), starts(), **call))

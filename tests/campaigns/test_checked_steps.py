@@ -101,5 +101,5 @@ def test_a_report_counts_and_names_what_is_wrong(tmp_path: Path, capsys: pytest.
 def test_a_field_that_a_step_refuses_is_not_counted_as_run() -> None:
     group = GROUPS["bump", "sphere"]
     known = [{"end": group.space_of.start, "dop853": [0.0] * 3, "resolved": [0.0] * 3}] * len(group.widths)
-    figures = summary(rows(group, "numpy", "default", 1e-4, {}, known))
+    figures = summary(rows(group, "numpy", "taylor", 1e-4, {}, known))
     assert figures["refused"] == figures["runs"] == 4 and figures["wrong"] == figures["failed"] == 0

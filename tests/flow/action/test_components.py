@@ -501,5 +501,6 @@ def test_psi_without_a_series_is_told_which_step_takes_it() -> None:
     for psi in (lambda m: np.where(m > 0, m, 0.0), lambda m, t: spline(t) * m):
         field = lh.GeneratorField(rho, psi)
         with pytest.raises(SeriesError, match="take step='rk45', a Runge-Kutta step"):
-            lh.integrate(field, (0, 1), [0.6, 0.0, 0.8])
+            lh.integrate(field, (0, 1), [0.6, 0.0, 0.8], step="taylor")
         assert lh.integrate(field, (0, 1), [0.6, 0.0, 0.8], step="rk45").success
+        assert "dop853" in str(lh.integrate(field, (0, 1), [0.6, 0.0, 0.8]))

@@ -387,6 +387,7 @@ BRANCHING: dict[str, Any] = {
 def test_a_generator_that_branches_is_refused_with_the_remedy_and_runs_with_it(name: str) -> None:
     field = lh.GeneratorField(lh.defining(lh.so(3)), BRANCHING[name])
     with pytest.raises(SeriesError, match="take step='rk45'"):
-        lh.integrate(field, (0, 1), [0.6, 0.0, 0.8])
-    sol = lh.integrate(field, (0, 1), [0.6, 0.0, 0.8], step=lh.RKMK("rk45"))
-    assert sol.success and abs(np.linalg.norm(sol.y[:, -1]) - 1) < 1e-14
+        lh.integrate(field, (0, 1), [0.6, 0.0, 0.8], step="taylor")
+    for options in ({}, {"step": lh.RKMK("rk45")}):
+        sol = lh.integrate(field, (0, 1), [0.6, 0.0, 0.8], **options)
+        assert sol.success and abs(np.linalg.norm(sol.y[:, -1]) - 1) < 1e-14

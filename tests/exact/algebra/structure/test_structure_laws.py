@@ -62,7 +62,7 @@ def invariants(g: LieAlgebra) -> dict[str, Any]:
         "kinds": (g.is_solvable(), g.is_nilpotent(), g.is_semisimple(), g.is_simple()),
         "derivations": g.derivations().dimension,
         "cohomology": [g.cohomology(k).dimension for k in range(3)],
-        "card": [line for line in g.describe().splitlines()[1:] if "isomorphic to" not in line],
+        "card": [line for line in g.describe().splitlines()[1:] if not set(line.split()) & {"isomorphic", "tables"}],
     }
 
 
