@@ -1,7 +1,7 @@
 """Branching rules and published tables, named in tests/oracles/branching_tables.json, and laws of restriction.
 
-The order of equal factors, the direction of a u(1), and which of two dual modules of a factor has a bar are free.
-The same choice must do for all lines of one rule.
+The order of equal factors, the direction of a u(1), which of two dual modules of a factor has a bar, and which of the
+subalgebras that outer automorphisms map to each other is meant are free. The same choice must do for all lines of a rule.
 """
 
 import json
@@ -62,15 +62,14 @@ def seen(table: lh.representations.Branching, order: Any, bar: Any, sign: Any) -
 
 
 def rule_of(kind: str, name: str) -> lh.representations.BranchingRule:
-    """By name, or 'A1:35' with its index, or 'levi A1 A1' without the u(1)."""
+    """By name, or 'A1 + A2:3,2' with the index of each factor (or of all), or 'levi 1,3' by nodes without the u(1)."""
     if ":" in name:
-        factors, index = name.split(":")[0].split(" + "), int(name.split(":")[1])
-        key = (tuple(factors), (index,) * len(factors))
+        factors, indices = name.split(":")[0].split(" + "), [int(x) for x in name.split(":")[1].split(",")]
+        key = (tuple(factors), tuple(indices) * (len(factors) // len(indices)))
         return next(r for r in lh.maximal_subalgebras(kind) if (r.factors, r.embedding_indices) == key)
     if name.startswith("levi"):
-        return lh.representations.BranchingRule(
-            kind, *[getattr(lh.branching_rule(kind, [1, 3]), x) for x in ("factors", "kind", "projection")]
-        )
+        found = lh.branching_rule(kind, [int(x) for x in name.removeprefix("levi ").split(",")])
+        return lh.representations.BranchingRule(kind, found.factors, found.kind, found.projection)
     return lh.branching_rule(kind, name)
 
 
@@ -103,20 +102,20 @@ def test_highest_weights_of_published_examples(entry: list[Any]) -> None:
 
     known = {tuple(map(int, w.split(","))): parts(text) for w, text in lines.items()}
 
-    def agree(order: Any, symmetries: Any) -> bool:
+    def agree(order: Any, symmetries: Any, outer: Any) -> bool:
         for weight, expected in known.items():
             terms: Counter[tuple[tuple[int, ...], ...]] = Counter()
-            for t in rule(weight).terms:
+            for t in rule(tuple(weight[i] for i in outer)).terms:
                 tops = [tuple(top[i] for i in p) for top, p in zip(t.highest_weights, symmetries, strict=True)]
                 terms[tuple(tops[i] for i in order)] += t.multiplicity
             if terms != expected:
                 return False
         return True
 
-    diagrams = [lh.root_system(factor).cartan for factor in rule.factors]
+    diagrams = [lh.root_system(factor).cartan for factor in (kind, *rule.factors)]
     options = product(*(lh.exact.algebra.roots.root_system.isomorphisms(c, c) for c in diagrams))
     orders = list(permutations(range(len(rule.factors))))
-    assert any(agree(order, symmetries) for symmetries in options for order in orders)
+    assert any(agree(order, symmetries, outer) for outer, *symmetries in options for order in orders)
 
 
 # dual Coxeter numbers, Bourbaki's plates with Kac, Infinite-dimensional Lie algebras, table of section 6.1
