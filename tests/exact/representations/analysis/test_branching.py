@@ -1,7 +1,7 @@
 """Branching rules and published tables, named in tests/oracles/branching_tables.json, and laws of restriction.
 
 The order of equal factors, the direction of a u(1), which of two dual modules of a factor has a bar, and which of the
-subalgebras that outer automorphisms map to each other is meant are free. The same choice must do for all lines of a rule.
+subalgebras that outer automorphisms map to each other is meant are free. One choice must do for all lines of a rule.
 """
 
 import json
