@@ -35,7 +35,6 @@ FULL = (
     *(f"diag(1, ..., 1 * sqrt(2)) of size {n}" for n in (2, 3, 4)),
 )
 """Decisions of pairs that are full."""
-MACHINE_CODE = "machine code makes every step, also the first and the last: round-off, and calls of psi"
 INTENDED = (
     {
         f"decisions: [{name} over RR] [{key}] ": "numerical verdicts compare with propagated errors"
@@ -63,52 +62,8 @@ INTENDED = (
         for key in ("failure", "failure parts")
     }
     | {
-        f"integrations: [solved: double bracket, Euler to 3, 0 to 1, dt=0.05, exponential=cayley] [{key}] ": (
-            "a run that does not keep its order says so"
-        )
-        for key in ("status", "statuses", "message")
-    }
-    | {
-        f"integrations: [{name}] [nfev] ": "events ask for the slope of g at the ends of a step"
-        for name in (
-            "solved: forced, RK45, 0 to 3, rtol=1e-07, dense_output=True, events=[height stop]",
-            "solved: forced, Taylor 3, 0 to 3, rtol=1e-05, t_eval=7 values, events=height",
-            "solved: many forced, RK45, 0 to 3, rtol=1e-07, dense_output=True, events=[height stop]",
-            "solved: many forced, Euler to 3, 0 to 3, dt=0.1, t_eval=7 values, events=height",
-            "resumed: forced, RK45, 0 to 3, rtol=1e-07, dense_output=True, events=height",
-        )
-    }
-    | {
-        "integrations: [resumed: body, Heun with energy, 0 to 5, dt=0.1] [nfev] ": (
-            "the preparation of a step is counted once, also if a run is resumed"
-        )
-    }
-    | {
-        f"integrations: [solved: {name}, compile=True] [{key}] ": MACHINE_CODE
-        for name, keys in (
-            ("S^4, Euler to 3, 0 to 2, rtol=1e-06", "t y"),
-            ("a hundred bodies, RK45, 0 to 5, rtol=1e-08", "t y nfev"),
-            ("body, Euler to 3, 0 to 10, dt=0.1", "y"),
-            ("body, Euler, 0 to 10, dt=0.1", "y"),
-            ("body, Heun with energy, 0 to 10, dt=0.1, clock=nominal", "y"),
-            ("body, RK4, 0 to 10, dt=0.1", "y"),
-            ("forced, Taylor 3, 0 to 5, dt=0.1", "y"),
-            ("many bodies, Euler to 3, 0 to 5, dt=21 values", "y"),
-        )
-        for key in keys.split()
-    }
-    | {
-        f"integrations: [{kind}: many forced, RK4, 0 to 3, dt=0.05, {more}compile=True] [{key}] ": MACHINE_CODE
-        for kind, more in (("chunked", "chunk=4, t_eval=7 values, "), ("resumed", "t_eval=7 values, "))
-        for key in ("y", "nfev")
-    }
-    | {
         f"cards: [so of diag(1, -1, 5, 7)] [{key}] ": "the search meets another involution first"
         for key in ("Cartan involution", "maximal compact subalgebra")
-    }
-    | {
-        f"integrations: [a damped spin] [{key}] ": "the default step is a Taylor step"
-        for key in ("t", "y", "nfev", "n_steps", "report")
     }
 )
 """Values that differ from those of 0.1.0 on purpose, and why."""

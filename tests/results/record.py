@@ -1,15 +1,13 @@
 """Results of liehom, written to a file that another version can be compared with bit for bit.
 
-    python -m tests.results.record OUT.json              all cases (15 s on one core, OMP_NUM_THREADS=1)
+    python -m tests.results.record OUT.json              all cases (10 s on one core)
     python -m tests.results.record --show NAME           the values of one case in full, before they are hashed
     python -m tests.results.compare BEFORE.json AFTER.json
 
-There are 100 decisions, 40 algebras with their structure, and 60 integrations. To record another version, run this
-script in an empty folder with PYTHONPATH=OTHER:HERE: OTHER holds the package `liehom`, HERE this folder `tests`.
-
-Decisions and structure are exact, so they do not depend on the machine, except where a floating-point search proposes
-an element, a form or an involution that is then proved. Integrations depend on the libraries in the header, and on
-the processor: numpy, the BLAS library and LLVM choose instructions by it.
+There are 100 decisions and 40 algebras with their structure. To record another version, run this script in an empty
+folder with PYTHONPATH=OTHER:HERE: OTHER holds the package `liehom`, HERE this folder `tests`. The results are exact, so
+they do not depend on the machine, except where a floating-point search proposes an element, a form or an involution
+that is then proved.
 """
 
 import argparse
@@ -23,9 +21,9 @@ from typing import Any
 import numpy as np
 
 import liehom as lh
-from tests.results import cards, decisions, integrations
+from tests.results import cards, decisions
 
-SECTIONS = {"decisions": decisions.CASES, "cards": cards.CASES, "integrations": integrations.CASES}
+SECTIONS = {"decisions": decisions.CASES, "cards": cards.CASES}
 LIBRARIES = ("numpy", "scipy", "python-flint", "llvmlite")
 
 REWORDED: dict[str, str] = {

@@ -18,9 +18,8 @@ SAMPLE = {
         *("diag(1, ..., 1 * sqrt(2)) of size 3", "powers of a matrix, 3"),
     ],
     "cards": ["so(3)", "sl(2)", "so(3,1)", "gl(3)", "heisenberg(2)", "gl(2)+e(2)", "aff(1)", "poincare(2)"],
-    "integrations": ["solved: body, Euler, 0 to 3, dt=0.1"],
 }
-FLOATS = ("[eta_numerical]", "[smallest_singular_value]", "[gap]")
+FLOATS = ("[eta_numerical]", "[smallest_singular_value]", "[gap]")  # their last bits depend on libraries and processor
 ADVICE = "; if only the wording has changed, say so in REWORDED in tests/results/record.py"
 
 
@@ -32,11 +31,7 @@ def before() -> dict[str, Any]:
 def difference(section: str, name: str) -> list[str]:
     after = json.loads(json.dumps(record.recorded(section, name)))
     lines = compare.differences({section: {name: before()[section][name]}}, {section: {name: after}})
-    return [line for line in lines if same_environment() or not any(key in line for key in FLOATS)]
-
-
-def same_environment() -> bool:
-    return not compare.environment(before(), {"header": record.header()})
+    return [line for line in lines if not any(key in line for key in FLOATS)]
 
 
 @pytest.mark.parametrize("section", ["decisions", "cards"])
@@ -52,37 +47,16 @@ def test_all_exact_results_are_those_of_0_1_0(section: str) -> None:
     assert not found, "\n".join(found) + ADVICE
 
 
-@pytest.mark.slow
-def test_all_integrations_are_those_of_0_1_0() -> None:
-    if not same_environment():
-        pytest.skip("floating-point results are compared where libraries and processor are those of 0.1.0.json")
-    found = [line for name in record.SECTIONS["integrations"] for line in difference("integrations", name)]
-    assert not found, "\n".join(found) + ADVICE
-
-
 def test_the_committed_file_has_all_cases() -> None:
     data = before()
     assert data["header"]["liehom"] == "0.1.0"
     assert {name: list(cases) for name, cases in record.SECTIONS.items()} == {
         name: list(cases) for name, cases in data.items() if name != "header"
     }
-    assert [len(cases) for cases in record.SECTIONS.values()] == [100, 40, 60]
+    assert [len(cases) for cases in record.SECTIONS.values()] == [100, 40]
 
 
 # -- negative controls -------------------------------------------------------------------------------------
-def test_a_last_bit_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
-    name = SAMPLE["integrations"][0]
-    one = record.recorded("integrations", name)
-    field, start = record.integrations.PROBLEMS["body"]()
-    moved = start.copy()
-    moved[0] += 2.0**-53
-    monkeypatch.setitem(record.integrations.PROBLEMS, "body", lambda: (field, moved))
-    found = compare.differences(
-        {"integrations": {name: one}}, {"integrations": {name: record.recorded("integrations", name)}}
-    )
-    assert any(name in line and "[y]" in line for line in found)
-
-
 def test_another_certificate_is_noticed() -> None:
     long = record.decisions.CASES["so(4)/so(3)"]()["certificate"]
     short = long.short()
@@ -97,7 +71,7 @@ def test_each_difference_is_printed_and_the_exit_status_is_1(
     assert compare.main([str(BEFORE), str(BEFORE)]) == 0
     after["decisions"]["so(4)/so(3)"]["full"] = False
     after["cards"]["so(3)"]["real form"] = "sl(2,R)"
-    del after["integrations"]["a damped spin"]
+    del after["cards"]["gl(3)"]
     after["cards"]["another"] = {}
     after["header"]["numpy"] = "0"
     changed = tmp_path / "after.json"
@@ -105,9 +79,9 @@ def test_each_difference_is_printed_and_the_exit_status_is_1(
     capsys.readouterr()
     assert compare.main([str(BEFORE), str(changed)]) == 1
     printed = capsys.readouterr().out
-    for text in ("[so(4)/so(3)] [full]", "[so(3)] [real form]", "[a damped spin] only before", "[another] only after"):
+    for text in ("[so(4)/so(3)] [full]", "[so(3)] [real form]", "[gl(3)] only before", "[another] only after"):
         assert text in printed
-    assert "numpy: " in printed and "4 differences in 200 cases" in printed
+    assert "numpy: " in printed and "4 differences in 140 cases" in printed
 
 
 def test_words_are_compared_as_they_were(monkeypatch: pytest.MonkeyPatch) -> None:
