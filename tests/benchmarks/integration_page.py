@@ -196,7 +196,11 @@ def _reached(found: Sequence[float], needs: Sequence[float]) -> str:
 
 def growth_part(data: dict[str, Any]) -> list[str]:
     found: dict[tuple[str, str], dict[str, str]] = {}
+    calls: dict[str, dict[str, str]] = {}
     for row in data["growth"]:
+        if row["what"].endswith((" first call", " a step")):  # of one trajectory on Sᵏ⁻¹, beside heyoka
+            calls.setdefault(row["what"].split(" on ")[0], {})[row["unit"]] = ", ".join(shown(y) for y in row["y"])
+            continue
         step, way = row["what"].removesuffix(", N = 1024").rsplit(", ", 1)
         last = f", {row['last']:.1f}" if math.isfinite(row["last"]) else ""
         against = f"{row['against']} = {', '.join(str(x) for x in row['x'])}"
@@ -208,10 +212,13 @@ def growth_part(data: dict[str, Any]) -> list[str]:
         "### Growth of the cost with order, dimension and number of trajectories", "",
         "A cell has the costs of a step and, after the colon, the exponents: slopes by least squares of logarithms, of "
         "all and of the second half. The column numpy is for 1024 trajectories. An expansion to order n needs O(n²) "
-        "products of coefficients. A generator that is affine in m on Sᵏ⁻¹ costs O(k dim g) = O((dim g)^1.5). An "
-        "ensemble costs O(N) if the arrays are so long that the overhead of numpy's calls is small.", "",
+        "products of coefficients. A generator that is affine in m on Sᵏ⁻¹ costs O(k dim g) = O((dim g)^1.5). "
+        "Long ensembles cost O(N).", "",
         *table(["step", "against", *columns], [
             [*key, *(cells.get(column, "-") for column in columns)] for key, cells in found.items()
+        ]),
+        *table(["on Sᵏ⁻¹, k = 5, 8, 16, 24, 40", "first call, s", "a step, µs"], [
+            [name, cells["s"], cells["µs"]] for name, cells in calls.items()
         ]),
     ]  # fmt: skip
 
