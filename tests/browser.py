@@ -14,7 +14,11 @@ FLAGS = (
 )
 
 
-def dom(page: Path) -> str:
-    """The document that a browser makes of a page, after its scripts have run."""
+def dom(page: Path, ready: str = "") -> str:
+    """The document that a browser makes of a page, after its scripts have run; a busy machine may need another try."""
     words = [str(BROWSER), *FLAGS.split(), f"--user-data-dir={page.parent / 'profile'}", page.as_uri()]
-    return subprocess.run(words, capture_output=True, text=True, timeout=120, check=True).stdout
+    for _ in range(3):
+        text = subprocess.run(words, capture_output=True, text=True, timeout=120, check=True).stdout
+        if ready in text:
+            break
+    return text

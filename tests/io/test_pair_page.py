@@ -369,7 +369,7 @@ def test_the_cone_turns_by_keys_buttons_and_dragging(tmp_path: Path) -> None:
         '<meta http-equiv="Content-Security-Policy"[^>]*>', f"<script>{uses}</script>", page_of("null cone in space")
     )
     (tmp_path / "page.html").write_text(text, encoding="utf-8")
-    out = json.loads(re.search(r"<body>(.*)</body>", dom(tmp_path / "page.html"), flags=re.DOTALL)[1])  # type: ignore[index]
+    out = json.loads(re.search(r"<body>(.*)</body>", dom(tmp_path / "page.html", "<body>{"), flags=re.DOTALL)[1])  # type: ignore[index]
     assert out["errors"] == []
     assert out["first"] == out["reset"] == [-2.18, 0.38]
     assert out["keys"] == [-2.08, 0.48]
