@@ -112,6 +112,8 @@ Run = tuple[np.ndarray | None, bool, int, str]
 
 def step_of(text: str) -> lh.Step | None:
     name, _, order = text.partition(":")
+    if name.startswith("corrected"):  # corrected:4 of Euler, corrected-heun:4 of another base
+        return lh.Corrected(lh.methods.step_named(name.partition("-")[2] or "euler"), int(order))
     return None if text == "default" else lh.methods.step_named(name, int(order) if order else None)
 
 

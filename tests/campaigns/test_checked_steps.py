@@ -23,6 +23,7 @@ JUMPS = [
     ("nmr pulse", "default", 1e-6), ("pulse on a body", "default", 1e-4), ("logistic 100", "default", 1e-4),
     ("sin 8", "default", 1e-6), ("t 8", "default", 1e-6), ("exp(-1/t)", "default", 1e-6),
     ("late wall", "default", 1e-9), ("nmr pulse of 1 percent", "rk45", 1e-6), ("early pulse alone", "rk45", 1e-9),
+    ("hot spot 0.1 on a circle", "corrected-heun:4", 1e-4), ("hot spot 0.06 on a circle", "corrected-heun:4", 1e-4),
 ]  # fmt: skip
 
 

@@ -212,7 +212,7 @@ def tried_size(
             # terms far below the allowed error are not compared with |X| h, else steps go to 0 at a time when X does
             speed = xp.maximum(speed, allowed / bound)
         gap: Any = limits.gap
-        if is_unbounded(gap) and local.velocity:  # an exponential may turn a point many times in a step
+        if is_unbounded(gap) and not local.looks_ahead:  # exponentials may turn a point many times in a step
             gap = xp.maximum(left / LOOKS, MAX_WAY * over_sites(length(m), axes) / speed)
         h = known_size(action, local, m, order, StepLimits(allowed, speed, bound, axes))
         if limits.gap is not None:
