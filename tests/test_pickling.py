@@ -93,6 +93,7 @@ def test_a_space(make: Callable[[], Any]) -> None:
         errors.DependentRowsError(1, [2]),
         errors.CertificateError("rank", "is 1"),
         errors.ShapeError("wrong"),
+        errors.StiffnessWarning("limited", 3.0, 0.5),
     ],
     ids=lambda error: type(error).__name__,
 )

@@ -239,6 +239,7 @@ def test_the_seed_does_not_change_the_verdict() -> None:
 # -- large and unlucky numbers -----------------------------------------------------------------------------
 SMALL = ["affine(so(2))", "affine(sl(2))", "affine(sl(3))", "affine(so(3,1))", "affine(S2(sl(3)))", "so(5)/so(4)"]
 SMALL += ["affine(sp(4,R))", "affine(sl(2,H)+sp(1))", "sl(3)/P1", "affine(field(1,1,1,1))", "affine(upper(3))"]
+SMALL += ["affine(sp(4,C))"]  # a symplectic form over C
 
 
 @pytest.mark.parametrize("factor", [MERSENNE, 10**100, MERSENNE * 10**330], ids=["prime", "googol", "beyond floats"])

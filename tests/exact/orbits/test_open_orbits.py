@@ -23,7 +23,7 @@ CASES: dict[str, tuple[int, int | None, int | None]] = {
     "affine(field(1,0))": (2, 2, 1), "affine(copies(2,gl(2,C)))": (8, 4, 1), "sl(3,C)/P{1,2}": (6, 2, 1),
     "so(5,C)/P{1,2}": (8, 6, 1), "sl(4)/so(4)": (7, None, 0), "so(8)/so(4)+so(4)": (13, None, 0),
     "affine(S2(gl(2,C)))": (8, None, 0), "so(3)/0": (1, None, 0), "so(3)/so(3)": (0, None, 1),
-    "so(5,3)/P{3,4}": (9, 4, None),
+    "so(5,3)/P{3,4}": (9, 4, None), "affine(so(3,C)+u(1))": (6, 4, 1), "affine(S2(upper(2)))": (3, 3, 4),
 }  # fmt: skip
 
 

@@ -6,6 +6,8 @@ from typing import Any
 import pytest
 from hypothesis import given, strategies as st
 
+from liehom.base.errors import FieldError
+from liehom.exact.scalars.floating import RR
 from liehom.exact.scalars.number_fields import NumberField
 from liehom.exact.scalars.rational import QQ
 
@@ -58,6 +60,19 @@ def test_floats_beyond_their_range(field: Any) -> None:
     assert field.to_float(field.convert(10**400)) == math.inf
     assert field.to_float(field.convert(f"1/{10**400}")) == 0.0
     assert field.to_float(field.convert(f"{10**400}/{10**399}")) == 10.0
+
+
+def test_rational_numbers_of_a_number_field_are_told() -> None:
+    root = ROOT2.generator
+    assert (root * root).is_rational() and not root.is_rational() and (root - root).is_rational()
+    assert QQ.power_coordinates(3) == [1]
+
+
+def test_square_roots_over_floats_are_refused_with_the_way_out() -> None:
+    with pytest.raises(FieldError, match="not exact"):
+        RR.sqrt(2.0)
+    assert [RR.sign(x) for x in (-0.5, 0.0, 2.0)] == [-1, 0, 1]
+    assert str(RR.matrix([[1.0, 2.5]])) == "[[1.  2.5]]"
 
 
 def test_zero_is_false_in_every_field() -> None:

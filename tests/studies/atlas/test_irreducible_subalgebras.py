@@ -6,7 +6,14 @@ import pytest
 
 import liehom as lh
 from liehom.exact.algebra import linear as families
-from liehom.studies.atlas.irreducible import classical_hull, complexified, linear_pair, module_pair, principal_pair
+from liehom.studies.atlas.irreducible import (
+    classical_hull,
+    complexified,
+    isotropy_irreducible_pair,
+    linear_pair,
+    module_pair,
+    principal_pair,
+)
 
 
 @pytest.mark.parametrize(
@@ -37,6 +44,12 @@ def test_complexification_is_a_complex_subalgebra() -> None:
     pair = complexified(lh.pair("g2/su(3)"), "g2(C)/sl(3,C)")
     assert pair.algebra.real_form() == "g2(C)" and pair.subalgebra.as_algebra().real_form() == "sl(3,C)"
     assert pair.algebra.subalgebra(pair.subalgebra.basis).dimension == 16
+
+
+def test_complex_rotations_act_on_hermitian_matrices_of_size_three() -> None:
+    pair = isotropy_irreducible_pair("so(6,3)/herm(so(3,C))")
+    assert pair.algebra.real_form() == "so(6,3)" and pair.subalgebra.as_algebra().real_form() == "sl(2,C)"
+    assert pair.isotropy_representation().is_irreducible()
 
 
 def test_hull_of_the_defining_representation_is_the_algebra() -> None:

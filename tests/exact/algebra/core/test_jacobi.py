@@ -53,8 +53,13 @@ def modulo_primes(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(jacobi, "derivations_fit", lambda _: False)
 
 
-METHODS = [lambda _: None, sparse, in_floats, modulo_primes]
-NAMES = ["double brackets", "sparse products", "floats", "primes"]
+def in_slices(monkeypatch: pytest.MonkeyPatch) -> None:
+    modulo_primes(monkeypatch)
+    monkeypatch.setattr(jacobi, "LARGEST", 0)
+
+
+METHODS = [lambda _: None, sparse, in_floats, modulo_primes, in_slices]
+NAMES = ["double brackets", "sparse products", "floats", "primes", "slices"]
 
 
 def tables(field: Any) -> list[StructureConstants]:

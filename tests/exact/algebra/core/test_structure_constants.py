@@ -22,3 +22,11 @@ def test_sparse_contractions_are_the_dense_ones(field: lh.scalars.Field, monkeyp
     assert (table.adjoint(x), table.contract(left, right, out)) == dense
     column = dense[0] @ right.T  # [x, right_b] in the columns
     assert table.contract(x, right, field.identity(4)) == [column.T]
+    assert table.first_nonzero(left, right, out) == dense_first(dense[1])
+    assert table.first_nonzero(x, x, out) is None
+
+
+def dense_first(blocks: list[lh.scalars.ExactMatrix]) -> tuple[int, int] | None:
+    """Indices of the first row of the first block that is not zero."""
+    rows = enumerate(block.first_nonzero_row() for block in blocks)
+    return next(((a, b) for a, b in rows if b is not None), None)

@@ -10,8 +10,9 @@ import pytest
 import liehom as lh
 from liehom.base.errors import InputError, NoRationalInvolutionError, UndecidedError
 from liehom.exact.algebra.involutions.cartan_decomposition import cartan_decomposition, is_cartan_involution
+from liehom.exact.algebra.involutions.cartan_involution import approximate_involution, float_constants, perturbed
 from liehom.exact.algebra.involutions.field_involutions import local_obstruction
-from liehom.exact.algebra.involutions.rational_involution import lattice_order
+from liehom.exact.algebra.involutions.rational_involution import lattice_order, rational_involution
 from liehom.testing import random_unimodular
 
 
@@ -122,6 +123,28 @@ def test_matrix_that_is_not_a_cartan_involution_is_rejected() -> None:
     theta = cartan_decomposition(g).theta
     assert not is_cartan_involution(g, -theta)  # no automorphism
     assert not is_cartan_involution(lh.so(3), cartan_decomposition(lh.so(3)).theta.scale(2))
+
+
+@pytest.mark.parametrize("name", ["sl(3,R)", "su(2,1)"])
+def test_search_starts_again_near_other_cartan_involutions(name: str) -> None:
+    """A proof that refuses the first minima sends the search to images under inner automorphisms."""
+    g = form(name).change_of_basis(random_unimodular(8, random.Random(5), 3))
+    theta = approximate_involution(g, 2)
+    assert theta is not None
+    constants, killing = float_constants(g), g.killing_form().to_numpy()
+    other = perturbed(constants, killing, theta, np.random.default_rng(1))
+    assert np.abs(other - theta).max() > 0.01 and np.allclose(other @ other, np.eye(8))
+    images = np.einsum("ai,bj,ijk->abk", other, other, constants)
+    assert np.allclose(images, constants @ other)
+    assert np.linalg.eigvalsh(-(other @ killing)).min() > 0
+    refused = []
+
+    def proved(matrix: Any) -> bool:
+        refused.append(matrix)
+        return len(refused) > 2 and is_cartan_involution(g, matrix)
+
+    matrix = rational_involution(g, theta, proved, 40)
+    assert matrix is not None and is_cartan_involution(g, matrix) and len(refused) > 2
 
 
 def test_cartan_decomposition_of_a_non_semisimple_algebra_raises() -> None:

@@ -142,6 +142,18 @@ def test_numbers_beyond_floats_leave_the_decision_to_exact_steps(
         proved(pair.change_of_basis(rows), False)
 
 
+def test_projectors_of_random_elements_are_proposed_after_the_basis() -> None:
+    action = TracelessIsotropyAction(lh.pair("affine(S3(gl(2)))"))
+    frame = plain_frame(action)
+    assert frame is not None
+    proposed = list(dominance._Search(action, frame).candidates(6, 0))
+    d = len(frame.matrices)
+    assert np.array_equal(proposed[:d], np.eye(d)) and len(proposed) > d
+    elements = np.tensordot(np.array(proposed[d:]), frame.matrices, 1)
+    values = np.linalg.eigvals(elements).real
+    assert np.isfinite(values).all() and (values.max(axis=1) > 0.1).all()
+
+
 @pytest.mark.usefixtures("without_random_rounds")
 def test_eigenvalue_problems_without_convergence_find_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     def fails(_: Any) -> Any:

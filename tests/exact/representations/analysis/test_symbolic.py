@@ -137,6 +137,9 @@ def test_a_number_field_gives_one_minor() -> None:
     generic = lh.defining("so(3)").over(lh.number_field("sqrt(2)")).symbolic_isotropy([X, "sqrt(2)", 0])
     assert not generic.sharp and generic.exact_dimension == generic.nonvanishing
     assert sympy.simplify(generic.matrix * generic.basis.T) == sympy.zeros(3, 1)
+    assert generic.rank_conditions(9) == [X, 1]  # a minor is a constant: the rank is 2 everywhere
+    with pytest.raises(InputError, match="9 minors of size 2, more than 8"):
+        generic.rank_conditions(8)
 
 
 @pytest.mark.parametrize(("strings", "point"), [

@@ -9,7 +9,7 @@ from hypothesis import given, settings, strategies as st
 import liehom as lh
 from liehom.base.errors import CatalogError, InputError, RepresentationError, ShapeError
 from liehom.exact.algebra.roots.root_system import RootSystem
-from liehom.exact.representations.highest_weight.highest_weight import admissible_lattice
+from liehom.exact.representations.highest_weight.highest_weight import _lattice_basis, admissible_lattice
 from liehom.exact.representations.invariants.representation_identity import (
     SparseStack,
     failing_generator_pair,
@@ -194,3 +194,17 @@ def test_dimensions_beyond_all_floats_are_refused() -> None:
         lh.highest_weight_module("B50", [1] * 50)
     with pytest.raises(InputError, match="GB"):
         lh.real_module("so(100)", [1] * 50)
+
+
+@settings(max_examples=examples(60))
+@given(st.lists(st.lists(st.integers(-9, 9), min_size=2, max_size=2).filter(any), min_size=1, max_size=4))
+def test_basis_of_the_lattice_spanned_by_integer_vectors(vectors: list[list[int]]) -> None:
+    sparse = [{k: c for k, c in enumerate(vector) if c} for vector in vectors]
+    basis, coordinates = _lattice_basis(sparse)
+    for vector, combination in zip(sparse, coordinates, strict=True):
+        total = [sum(c * basis[k][0].get(i, 0) for k, c in combination.items()) for i in range(2)]
+        assert total == [vector.get(i, 0) for i in range(2)]
+    for element, combination in basis:
+        total = [sum(c * vectors[x][i] for x, c in combination.items()) for i in range(2)]
+        assert total == [element.get(i, 0) for i in range(2)]
+    assert len(basis) == QQ.matrix(vectors).rank()
