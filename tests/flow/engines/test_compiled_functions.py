@@ -54,6 +54,22 @@ def test_functions_agree(psi: Any) -> None:
     assert_same(*both(field(psi), (0, 1), sphere(5), step=lh.RKMK("heun"), dt=0.11))
 
 
+def test_rare_functions_agree_in_one_field() -> None:
+    """One compilation for what seldom stands in psi, so that each runs by default."""
+
+    def psi(m: Any) -> Any:
+        turned = np.linalg.inv(np.eye(3) + 0.1 * m[..., :, None] * m[..., None, :])
+        x = np.fmax(m, np.fmin(np.sqrt(np.abs(m)), 0.4)) + np.nan_to_num(m / 3, nan=0.7)
+        some = np.any(m > 0.3, axis=-1, where=[True, False, True]) & np.all(m > -2, axis=-1)
+        least = np.min(m, axis=-1, where=m < 0, initial=1.0) + np.max(m, axis=-1)
+        filled = np.full_like(m, 0.25) + np.zeros_like(m) + np.ones_like(m)
+        rows = np.stack([m[..., 0], m[..., 1], m[..., 2]]).T
+        rows = rows if rows.ndim == m.ndim else rows.T
+        return np.where(some[..., None], x, -x) + least[..., None] + filled + (turned @ m[..., None])[..., 0] + m.real
+
+    assert_same(*both(field(psi), (0, 1), sphere(5), step=lh.RKMK("heun"), dt=0.11), ulps=64)
+
+
 @pytest.mark.filterwarnings("ignore:status -1")
 @pytest.mark.parametrize("part", [
     lambda x, y: np.maximum(np.log(x), -1.0), lambda x, y: np.maximum(np.log(x), y),
