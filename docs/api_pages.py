@@ -49,11 +49,12 @@ def documented(thing: object) -> bool:
 
 
 def member_names(cls: type) -> list[str]:
-    """Public methods and properties with a docstring that the class itself defines, in the order of the source."""
+    """Public methods and properties with a docstring that the class or an inner base of it (_Base) defines."""
     kinds = (property, functools.cached_property, staticmethod, classmethod)
+    inner = [base for base in cls.__mro__[1:] if base.__name__.startswith("_")]
     return [
         name
-        for name, value in vars(cls).items()
+        for name, value in {**dict(item for base in inner for item in vars(base).items()), **vars(cls)}.items()
         if not name.startswith("_")
         and (inspect.isfunction(value) or isinstance(value, kinds))
         and documented(getattr(cls, name))
