@@ -119,13 +119,14 @@ def accuracy(problem: Problem, solver: Solver, settings: tuple[float, ...] | Non
 def cost(problem: Problem, solver: Solver, count: int, points: list[Point], enough: float = 0.05) -> dict[str, Any]:
     """Microseconds for each trajectory: {"call", "step"}, or for each setting those for the time `problem.span`.
 
-    Where steps of another size cost something else: {"at": {setting: {"call", "step"}}}.
+    Where steps of another size cost something else: {"at": {setting: {"call", "step"}}}. Empty if nothing is measured.
     """
     if count >= MANY:
         count = min(count, solver.lanes, problem.lanes)
     starts = problem.starts(count).reshape(count, -1)
     if solver.varying:
-        return {"at": {repr(p[0]): _of_steps(problem, solver, starts, enough, p[0]) for p in points}}
+        found = {repr(p[0]): _of_steps(problem, solver, starts, enough, p[0]) for p in points}
+        return {"at": {setting: taken for setting, taken in found.items() if taken}}
     if solver.fixed:
         return _of_steps(problem, solver, starts, enough)
     span = problem.span if count < MANY else problem.lanes_span
@@ -161,6 +162,8 @@ def _of_steps(
         wanted = (1.5 * first + enough) * (many - few) / max(last - first, 0.02 * enough)
         many = int(min(20 * many, max(3 * many, 1.3 * wanted)))
         last = taken(many, 1)
+    else:
+        return {}  # the run ends before its steps are made, as at an equilibrium: it shows no cost of a step
     step = max(last - first, 0.0) / (many - few)
     scale = 1e6 / len(starts)
     return {"call": max(first - few * step, 0.0) * scale, "step": step * scale}

@@ -1,7 +1,7 @@
-"""The targets for compiled integration, as ratios measured in one run.
+"""Targets for compiled integration, measured in one run, and the least costs of methods at an error.
 
-(a) the compiled step against a kernel in C, (b) orbits and (c) trajectories against peers, (d) numpy arrays against
-numpy by hand, (e) compile time, (f) one trajectory, (g) exponents.
+(a) the compiled step against a kernel in C, (b) numpy arrays against numpy by hand, (c) compile time, (d) one
+trajectory.
 """
 
 import math
@@ -22,12 +22,10 @@ from tests.benchmarks.integration_measure import cost_of, is_known, matched
 from tests.benchmarks.integration_problems import Problem
 
 TARGETS = (1e-3, 1e-6, 1e-9, 1e-12)
-RIVALS = ("heyoka.py", "scipy DOP853", "diffrax")
-BY_HAND = ("numba RK4 by hand",)
 
 
 def kernels(*, tiny: bool = False) -> dict[str, Any]:
-    """(a), (d), (e), (f)."""
+    """(a) to (d)."""
     rounds = 1 if tiny else 30
     found: dict[str, Any] = {}
     m = by_hand.starts(padded(by_hand.LANES, 16))
@@ -109,26 +107,6 @@ def best(
         if str(count) in row.get("costs", {})
     ]
     return min(found, default=(math.inf, ""))
-
-
-def ratios(
-    problem: Problem,
-    methods: list[dict[str, Any]],
-    count: int,
-    *,
-    orbit: bool,
-    call: bool,
-    rivals: tuple[str, ...] = RIVALS,
-) -> list[float]:
-    """How many times more the best rival costs than the best of liehom, at each of the errors."""
-    ours = [row for row in methods if row["group"].startswith("liehom")]
-    theirs = [row for row in methods if row["group"] in rivals]
-    found = []
-    for target in TARGETS:
-        rival = best(problem, theirs, count, target, orbit=orbit, call=call)[0]
-        mine = best(problem, ours, count, target, orbit=orbit, call=call)[0]
-        found.append(rival / mine if math.isfinite(mine) else 0.0)
-    return found
 
 
 def curve(problem: Problem, row: dict[str, Any], count: int, *, orbit: bool) -> list[tuple[float, float]]:

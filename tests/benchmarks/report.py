@@ -69,7 +69,8 @@ def measured(problem: Any, counts: tuple[int, ...]) -> dict[str, Any]:
             row["drift"] = drift(problem, solver, known[solver.name])
         row["points"] = points = known[(solver.accuracy or solver).name]
         sizes = [n for n in counts if n in solver.counts and not (problem.coupled and n > 10)]
-        row["costs"] = {str(n): cost(problem, solver, n, points) for n in sizes if points}
+        costs = {str(n): cost(problem, solver, n, points) for n in sizes if points}
+        row["costs"] = {n: taken for n, taken in costs.items() if taken}
         print(f"{problem.name}: {solver.name}, {time.process_time() - begin:.0f} s", flush=True)
     return {"title": problem.title, "methods": rows, "load": round(os.getloadavg()[0], 1)}
 

@@ -20,7 +20,7 @@ from tests.benchmarks.integration_page import BEGIN, END, PARTS, shown
 from tests.benchmarks.integration_peers import LADDER, PEERS, Solver
 from tests.benchmarks.integration_pictures import KINDS, RATIOS, draw, multiples, picture_name
 from tests.benchmarks.integration_problems import Problem, chain, problems, quartic, rigid_body, sphere4
-from tests.benchmarks.integration_targets import compile_time, kernels, ratios
+from tests.benchmarks.integration_targets import best, compile_time, kernels
 from tests.benchmarks.report import DATA, DOCS
 
 SPAN = 0.5
@@ -155,14 +155,21 @@ def test_targets_are_measured() -> None:
     found = kernels(tiny=True)
     assert found["arrays"]["ratio"] > 0 and found["compile"]["first"] > 0 and found["compile"]["again"] > 0
     assert found["one corrected"] > 0
-    peer = {"group": "heyoka.py", "label": "", "points": [(1e-3, 1e-13, 1e-13)]}
-    ours = {"group": "liehom", "label": "T4", "points": [(1.0, 1e-13, 1e-13)]}
+
+
+def test_the_least_cost_at_an_error_contains_the_call_if_asked() -> None:
+    points = [(1.0, 1e-13, 1e-13)]
     rows = [
-        peer | {"costs": {"10": {"settings": {"0.001": 50.0}}}},
-        ours | {"costs": {"10": {"call": 150.0, "step": 0.1}}},
+        {"label": "T4", "points": points, "costs": {"10": {"call": 150.0, "step": 0.1}}},
+        {
+            "label": "T8",
+            "points": points,
+            "costs": {"10": {"call": 100.0, "step": 0.3}, "1": {"call": 1.0, "step": 1.0}},
+        },
     ]
-    assert ratios(rigid_body(), rows, 10, orbit=True, call=False) == pytest.approx([5.0] * 4)
-    assert ratios(rigid_body(), rows, 10, orbit=False, call=True) == pytest.approx([0.3125] * 4)
+    cheapest = [best(rigid_body(), rows, 10, 1e-6, orbit=True, call=call) for call in (False, True)]
+    assert [(pytest.approx(cost), label) for cost, label in cheapest] == [(10.0, "T4"), (130.0, "T8")]
+    assert best(rigid_body(), rows, 100, 1e-6, orbit=True, call=True) == (math.inf, "")
 
 
 @pytest.mark.slow
@@ -225,11 +232,12 @@ def test_pictures_are_drawn_from_the_figures_alone(tmp_path: Path) -> None:
 
 
 def test_multiples_are_ratios_of_whole_calls() -> None:
-    data = json.loads(DATA.read_text(encoding="utf-8"))
-    for problem, ratio in multiples(data, "heyoka.py", 10_000, 1e-6):
-        methods = data["problems"][problem.name]["methods"]
-        wanted = ratios(problem, methods, 10_000, orbit=False, call=True, rivals=("heyoka.py",))[1]
-        assert ratio == pytest.approx(wanted)
+    points = [(1.0, 1e-13, 1e-13)]
+    ours = {"group": "liehom", "label": "T4", "points": points, "costs": {"10": {"call": 150.0, "step": 0.1}}}
+    peer = {"group": "heyoka.py", "label": "", "points": points, "costs": {"10": {"settings": {"1.0": 40.0}}}}
+    data = {"problems": {rigid_body().name: {"methods": [ours, peer]}}}
+    [(problem, ratio)] = multiples(data, "heyoka.py", 10, 1e-6)
+    assert (problem.name, ratio) == (rigid_body().name, pytest.approx(40 / 160))
 
 
 def test_the_costs_of_steps_are_those_of_the_figures() -> None:
