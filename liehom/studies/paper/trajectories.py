@@ -36,7 +36,7 @@ ZERO = 1e-12
 
 
 def figure1(quick: bool = False, seed: int = FIGURE_SEED) -> Reproduction:
-    """Figure 1: trajectories on the sphere for a triaxial and an axisymmetric body; `quick` leaves it as it is.
+    """Figure 1: trajectories on the sphere for a triaxial and an axisymmetric body, whole also if `quick`.
 
     Examples
     --------
