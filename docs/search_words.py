@@ -52,6 +52,7 @@ WORDS = {
     "attitude": "notebooks/attitude-control",
     "inertia": "bodies",
     "Riccati": "projective",
+    "inverse kinematics": "control",
     # quantum physics
     "Pauli": "physics",
     "qubit": "physics",
@@ -64,6 +65,11 @@ WORDS = {
     "tensor product": "tutorials/representations",
     "SU(5)": "notebooks/symmetry-breaking",
     "embedding index": "symmetry-breaking",
+    "isospin": "symmetry-breaking",
+    "Clebsch-Gordan": "tutorials/representations",
+    # all
+    "parallel": "distributed",
+    "logging": "faq",
 }
 PROGRAMS = ("language_data.js", "searchtools.js")
 STUBS = """
