@@ -25,6 +25,8 @@ CLIFF = 1e6
 """Between two settings whose errors are further apart nothing is interpolated."""
 PATIENCE = 20.0
 """Seconds after which no finer setting of a solver is tried for its errors."""
+TARGETS = (1e-3, 1e-6, 1e-9, 1e-12)
+"""The errors at which costs are compared."""
 Point = tuple[float, float, float]
 """(setting, error of the orbit, error of the trajectory)"""
 
@@ -212,3 +214,24 @@ def drift(problem: Problem, solver: Solver, points: list[Point], target: float =
     y = solver.solve(problem, starts, problem.trajectory_span, settings[0], 1)[0]
     before, after = (problem.drift(x.reshape(-1, *problem.shape)) for x in (starts, y))
     return float(np.max(np.abs(after - before)))
+
+
+# -- from the tables -----------------------------------------------------------------------------------------
+def best(
+    problem: Problem, methods: list[dict[str, Any]], count: int, target: float, *, orbit: bool, call: bool
+) -> tuple[float, str]:
+    """The least cost of some methods at an error, and whose it is."""
+    found = [
+        (matched(problem, row["points"], row["costs"][str(count)], target, orbit=orbit, call=call), row["label"])
+        for row in methods
+        if str(count) in row.get("costs", {})
+    ]
+    return min(found, default=(math.inf, ""))
+
+
+def curve(problem: Problem, row: dict[str, Any], count: int, *, orbit: bool) -> list[tuple[float, float]]:
+    """(cost of the steps, error) along the settings of a method."""
+    measured = row["costs"][str(count)]
+    known = [p for p in row["points"] if is_known(measured, p[0])]
+    made = [(cost_of(problem, measured, p[0], call=False, orbit=orbit), p[1 if orbit else 2]) for p in known]
+    return [(c, e) for c, e in made if c > 0 and 0 < e < 3]

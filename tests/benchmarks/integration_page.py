@@ -9,10 +9,10 @@ from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
+from tests.benchmarks.integration_measure import TARGETS, best
 from tests.benchmarks.integration_methods import LLVM, SHORT
-from tests.benchmarks.integration_pictures import MANY, PEERS, RATIOS, draw, groups, image, multiples, picture_name
+from tests.benchmarks.integration_pictures import MANY, PEERS, RATIOS, groups, image, multiples, picture_name
 from tests.benchmarks.integration_problems import Problem, problems
-from tests.benchmarks.integration_targets import TARGETS, best
 
 BEGIN, END = "<!-- integration: begin -->", "<!-- integration: end -->"
 EXPONENTS = ("10⁻³", "10⁻⁶", "10⁻⁹", "10⁻¹²")
@@ -294,8 +294,7 @@ def _least_calls(data: dict[str, Any]) -> str:
 
 
 def write(data: dict[str, Any], docs: Path) -> None:
-    """Write the parts between the markers of both pages, and the pictures."""
-    draw(data, docs / "_static")
+    """Write the parts between the markers of both pages."""
     for name, part in PARTS.items():
         page = docs / name
         text = page.read_text(encoding="utf-8")

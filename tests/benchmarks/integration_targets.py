@@ -1,10 +1,9 @@
-"""Targets for compiled integration, measured in one run, and the least costs of methods at an error.
+"""Targets for compiled integration, measured in one run.
 
 (a) the compiled step against a kernel in C, (b) numpy arrays against numpy by hand, (c) compile time, (d) one
 trajectory.
 """
 
-import math
 import os
 import tempfile
 import time
@@ -18,10 +17,6 @@ import liehom as lh
 from liehom.flow.engines.traced_step import traced_step
 from liehom.flow.tracing.machine import Kernel, padded
 from tests.benchmarks import test_compiled as by_hand
-from tests.benchmarks.integration_measure import cost_of, is_known, matched
-from tests.benchmarks.integration_problems import Problem
-
-TARGETS = (1e-3, 1e-6, 1e-9, 1e-12)
 
 
 def kernels(*, tiny: bool = False) -> dict[str, Any]:
@@ -94,24 +89,3 @@ def compile_time(order: int) -> dict[str, float]:
             os.environ.pop("LIEHOM_CACHE_DIR")
             if before is not None:
                 os.environ["LIEHOM_CACHE_DIR"] = before
-
-
-# -- from the tables -----------------------------------------------------------------------------------------
-def best(
-    problem: Problem, methods: list[dict[str, Any]], count: int, target: float, *, orbit: bool, call: bool
-) -> tuple[float, str]:
-    """The least cost of some methods at an error, and whose it is."""
-    found = [
-        (matched(problem, row["points"], row["costs"][str(count)], target, orbit=orbit, call=call), row["label"])
-        for row in methods
-        if str(count) in row.get("costs", {})
-    ]
-    return min(found, default=(math.inf, ""))
-
-
-def curve(problem: Problem, row: dict[str, Any], count: int, *, orbit: bool) -> list[tuple[float, float]]:
-    """(cost of the steps, error) along the settings of a method."""
-    measured = row["costs"][str(count)]
-    known = [p for p in row["points"] if is_known(measured, p[0])]
-    made = [(cost_of(problem, measured, p[0], call=False, orbit=orbit), p[1 if orbit else 2]) for p in known]
-    return [(c, e) for c, e in made if c > 0 and 0 < e < 3]
