@@ -159,7 +159,7 @@ def setup(app: Any) -> None:
     import picture_directive
     import pictures
 
-    from tests.benchmarks import integration_pictures, stability
+    from tests.benchmarks import energy_drift, integration_pictures, stability
 
     def expand(app: Any, page: str, source: list[str]) -> None:
         source[0] = api_pages.expand(page, source[0], escaped)
@@ -177,7 +177,7 @@ def setup(app: Any) -> None:
     app.connect("autodoc-process-docstring", keep_colon, priority=100)
     app.connect("autodoc-process-docstring", add_members, priority=950)
     app.connect("builder-inited", pictures.draw)
-    for module in (integration_pictures, stability):
+    for module in (energy_drift, integration_pictures, stability):
         app.connect("builder-inited", lambda app, draw=module.draw_for_pages: draw(pictures.FOLDER))
     app.connect("html-page-context", page_tree.Navigation(), priority=100)
     app.add_directive("pairpage", pair_page_directive.PairPage)
