@@ -159,6 +159,8 @@ def setup(app: Any) -> None:
     import picture_directive
     import pictures
 
+    from tests.benchmarks import energy_drift, integration_pictures, stability
+
     def expand(app: Any, page: str, source: list[str]) -> None:
         source[0] = api_pages.expand(page, source[0], escaped)
 
@@ -175,6 +177,8 @@ def setup(app: Any) -> None:
     app.connect("autodoc-process-docstring", keep_colon, priority=100)
     app.connect("autodoc-process-docstring", add_members, priority=950)
     app.connect("builder-inited", pictures.draw)
+    for module in (energy_drift, integration_pictures, stability):
+        app.connect("builder-inited", lambda app, draw=module.draw_for_pages: draw(pictures.FOLDER))
     app.connect("html-page-context", page_tree.Navigation(), priority=100)
     app.add_directive("pairpage", pair_page_directive.PairPage)
     linker = name_links.Linker()

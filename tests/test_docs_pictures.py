@@ -10,6 +10,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from tests.benchmarks.integration_pictures import RATIOS, picture_name
+from tests.benchmarks.integration_problems import problems
 from tests.test_docs import DOCS
 from tests.test_docs_copied import faults_of_pasting
 
@@ -35,7 +37,8 @@ def script(pictures: Any) -> Callable[[str], str]:
 def test_every_picture_is_on_a_page_with_words_for_those_who_do_not_see_it(pictures: Any) -> None:
     text = "".join(path.read_text(encoding="utf-8") for path in sorted(DOCS.rglob("*.md")))
     used = dict(re.findall(r"^`{3,}\{picture\} (\w+)\n:alt: (.*)$", text, flags=re.MULTILINE))
-    assert set(used) == set(pictures.DRAWN)
+    measured = {"energy_drift", "stability", RATIOS, *map(picture_name, problems())}
+    assert set(used) == set(pictures.DRAWN) | measured
     assert min(len(alt) for alt in used.values()) > 20
 
 

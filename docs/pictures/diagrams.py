@@ -33,18 +33,18 @@ def satake_diagrams(colours: Sequence[str]) -> Any:
 @picture
 def root_systems(colours: Sequence[str]) -> Any:
     """One in the plane and one in space."""
-    figure = new_figure(4.4, 8.2)
-    lh.plotting.plot_root_system("G2", figure.add_subplot(2, 1, 1))
-    lh.plotting.plot_root_system("B3", figure.add_subplot(2, 1, 2, projection="3d", proj_type="ortho"))
+    figure = new_figure(7.4, 4.0)
+    lh.plotting.plot_root_system("G2", figure.add_subplot(1, 2, 1))
+    lh.plotting.plot_root_system("B3", figure.add_subplot(1, 2, 2, projection="3d", proj_type="ortho"))
     return figure
 
 
 @picture
 def weight_diagrams(colours: Sequence[str]) -> Any:
     """One in the plane and one in space."""
-    figure = new_figure(4.4, 8.2)
-    lh.plotting.plot_weights("A2", (3, 1), figure.add_subplot(2, 1, 1))
-    lh.plotting.plot_weights("A3", (1, 0, 1), figure.add_subplot(2, 1, 2, projection="3d", proj_type="ortho"))
+    figure = new_figure(6.4, 3.8)
+    lh.plotting.plot_weights("A2", (3, 1), figure.add_subplot(1, 2, 1))
+    lh.plotting.plot_weights("A3", (1, 0, 1), figure.add_subplot(1, 2, 2, projection="3d", proj_type="ortho"))
     return figure
 
 

@@ -36,10 +36,10 @@ def phase_portraits(colours: Sequence[str]) -> Any:
         velocity = m / np.array([1.0, 2.0, 3.0])
         return -velocity - np.cross(m, velocity) / 5
 
-    figure = new_figure(4.4, 8.8)
-    lh.plotting.plot_phase_portrait("m0**2/2 + m1**2/4 + m2**2/6", figure.add_subplot(2, 1, 1, **VIEW))
+    figure = new_figure(6.4, 3.9)
+    lh.plotting.plot_phase_portrait("m0**2/2 + m1**2/4 + m2**2/6", figure.add_subplot(1, 2, 1, **VIEW))
     field = lh.GeneratorField(lh.adjoint(lh.so(3)), damped)
-    lh.plotting.plot_phase_portrait(field, figure.add_subplot(2, 1, 2, **VIEW))
+    lh.plotting.plot_phase_portrait(field, figure.add_subplot(1, 2, 2, **VIEW))
     figure.axes[0].set_title("free rigid body", loc="center")
     figure.axes[1].set_title("with damping", loc="center")
     return figure

@@ -733,9 +733,8 @@ def _geometry(pair: Pair) -> str:
         words = "of exact pairs" if not pair.field.exact else f"up to dim g/h = {MAX_CURVED}"
         return _section("geometry", paragraph(f"Computed here for metrics and forms {words} only."))
     shown = [(fact.name.replace("_", " "), fact.words) for fact in geometry_facts(pair, einstein=False)]
-    return _section(
-        "geometry", facts(shown), paragraph("The command `liehom geometry` lists the Einstein metrics too.")
-    )
+    command = code_block("liehom geometry pair.json")
+    return _section("geometry", facts(shown), paragraph("This command lists the Einstein metrics too:"), command)
 
 
 def _brackets(pair: Pair) -> str:
@@ -752,7 +751,7 @@ def _brackets(pair: Pair) -> str:
     return _section(
         "brackets",
         facts([("basis of g", basis)]),
-        paragraph("All brackets of basis elements that are not 0, up to antisymmetry:"),
+        paragraph("The brackets of basis elements that are not 0, up to antisymmetry:"),
         f'<div class="brackets"><div>{shown}</div>{bracket_picture(g)}</div>',
     )
 

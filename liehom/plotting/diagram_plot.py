@@ -32,7 +32,7 @@ from liehom.plotting.phase_plot import AnyAxes
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-# Plots of Dynkin, Satake and Vogan diagrams, and of bracket tables. Nodes are in Bourbaki's order, numbered from 0.
+# Plots of Dynkin, Satake and Vogan diagrams, and of bracket tables. Nodes have Bourbaki's numbers, from 1.
 # Several lines in a bond are an angle of 135 or 150 degrees between the simple roots, and its arrow points to the
 # shorter root.
 

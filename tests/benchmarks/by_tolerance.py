@@ -18,7 +18,7 @@ import warnings
 from pathlib import Path
 from typing import Any
 
-from tests.benchmarks.integration_measure import accuracy, cost, matched
+from tests.benchmarks.integration_measure import TARGETS, accuracy, cost, matched
 from tests.benchmarks.integration_methods import LADDER, LLVM, SERIES, adaptive, integrate
 from tests.benchmarks.integration_peers import PEERS, Solver
 from tests.benchmarks.integration_problems import (
@@ -32,7 +32,6 @@ from tests.benchmarks.integration_problems import (
     symmetric4,
     underwater_body,
 )
-from tests.benchmarks.integration_targets import TARGETS
 from tests.benchmarks.report import conditions
 
 DATA = Path(__file__).resolve().parents[2] / "docs" / "_static" / "by_tolerance.json"

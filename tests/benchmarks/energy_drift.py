@@ -1,12 +1,14 @@
 """Energy and Casimir functions over 10^6 steps of symplectic, corrected, conserving and other steps.
 
-    python -m tests.benchmarks.energy_drift [--steps 1000000] [--page docs/lie-poisson.md] [--pictures docs/_static]
+    python -m tests.benchmarks.energy_drift [--steps 1000000] [--page docs/lie-poisson.md] [--curves]
 
-prints a table; with --page it replaces the table between the markers of the page, with --pictures it draws
-energy_drift_light.svg and energy_drift_dark.svg. All runs are compiled by LLVM, in one thread.
+prints a table; with --page it replaces the table between the markers of the page, with --curves it keeps the curves in
+docs/_static/energy_drift.json, from which the build of the pages draws them. All runs are compiled by LLVM, in one
+thread.
 """
 
 import argparse
+import json
 import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -15,9 +17,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 import liehom as lh
-from liehom.plotting.canvas import new_figure, style
-from liehom.plotting.drift_plot import plot_energy_drift
+from liehom.plotting.canvas import DASHES, MARKERS as POINTS, current_colours, new_figure, style
+from liehom.plotting.drift_plot import HAIRLINE
 
+DATA = Path(__file__).resolve().parents[2] / "docs" / "_static" / "energy_drift.json"
 DT = 0.1
 SAMPLES = 600
 """Times at which energy and Casimir functions are looked at; half of them are spread evenly over the logarithm."""
@@ -42,7 +45,6 @@ class Row(NamedTuple):
     energy: Any
     casimir: float
     cost: float
-    solution: lh.Solution
 
 
 def spin() -> System:
@@ -112,7 +114,7 @@ def measured(system: System, name: str, count: int) -> Row:
     values = zip(system.casimirs(points), system.casimirs(system.start), strict=True)
     moved = [np.abs(after / before - 1).max() for after, before in values]
     cost = taken / int(again.n_steps) * 1e6
-    return Row(name, system.steps[name].order, times, energy, float(max(moved)), cost, sol)
+    return Row(name, system.steps[name].order, times, energy, float(max(moved)), cost)
 
 
 def table(found: Sequence[tuple[System, Sequence[Row]]], count: int) -> str:
@@ -138,28 +140,54 @@ def table(found: Sequence[tuple[System, Sequence[Row]]], count: int) -> str:
     return "\n".join(lines)
 
 
-def draw(found: Sequence[tuple[System, Sequence[Row]]], folder: Path) -> None:
+Curves = dict[str, dict[str, tuple[list[float], list[float]]]]
+"""By title and step: times, and the largest relative error of the energy so far."""
+
+
+def curves(found: Sequence[tuple[System, Sequence[Row]]]) -> Curves:
+    """Every other sampled time of each run, with four digits."""
+
+    def curve(system: System, row: Row) -> tuple[list[float], list[float]]:
+        errors = np.maximum.accumulate(row.energy) / abs(float(system.energy(system.start)))
+        times, errors = ([float(f"{value:.4g}") for value in x[1::2]] for x in (row.times, errors))
+        return times, errors
+
+    return {system.title: {row.name: curve(system, row) for row in rows} for system, rows in found}
+
+
+def draw(found: Curves, folder: Path) -> None:
     """energy_drift_light.svg and energy_drift_dark.svg: the largest energy error so far over time."""
     for kind in ("light", "dark"):
         with style(dark=kind == "dark"):
             figure = new_figure(5.6, 4.6 * len(found))
             figure.patch.set_alpha(0.0)
             panels = figure.subplots(len(found), 1, sharex=True, squeeze=False)[:, 0]
-            for axes, (system, rows) in zip(panels, found, strict=True):
-                plot_energy_drift({row.name: row.solution for row in rows}, system.energy, axes)
-                axes.set_title(system.title)
+            for axes, (title, runs) in zip(panels, found.items(), strict=True):
+                for k, (name, (times, errors)) in enumerate(runs.items()):
+                    axes.loglog(
+                        times, np.maximum(errors, HAIRLINE), DASHES[k % len(DASHES)], color=current_colours()[k],
+                        marker=POINTS[k], markersize=5, markevery=(7 * k % 50, 50), linewidth=1.5, label=name,
+                    )  # fmt: skip
+                axes.set(title=title, ylabel="largest error so far, relative")
                 below = 0.18 if axes is panels[-1] else 0.04
                 axes.legend(loc="upper center", bbox_to_anchor=(0.45, -below), ncols=2, fontsize=9, handlelength=3.0)
-                if axes is not panels[-1]:
-                    axes.set_xlabel("")
+            panels[-1].set_xlabel("time since the initial point")
             figure.savefig(folder / f"energy_drift_{kind}.svg", metadata={"Date": None})
+
+
+def draw_for_pages(folder: Path) -> None:
+    """Write the pictures of the page, if one is missing or older than the curves or this module."""
+    files = [folder / f"energy_drift_{kind}.svg" for kind in ("light", "dark")]
+    changed = max(path.stat().st_mtime for path in (DATA, Path(__file__)))
+    if not all(file.exists() and file.stat().st_mtime > changed for file in files):
+        draw(json.loads(DATA.read_text(encoding="utf-8")), folder)
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
     parser.add_argument("--steps", type=int, default=1_000_000)
     parser.add_argument("--page", type=Path)
-    parser.add_argument("--pictures", type=Path)
+    parser.add_argument("--curves", action="store_true")
     given = parser.parse_args()
     found = []
     for system in (spin(), body()):
@@ -170,8 +198,8 @@ def main() -> None:
         before, rest = given.page.read_text(encoding="utf-8").split(MARKERS[0])
         _, after = rest.split(MARKERS[1])
         given.page.write_text(f"{before}{MARKERS[0]}\n\n{text}\n{MARKERS[1]}{after}", encoding="utf-8")
-    if given.pictures:
-        draw(found, given.pictures)
+    if given.curves:
+        DATA.write_text(json.dumps(curves(found)) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

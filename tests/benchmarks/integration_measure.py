@@ -25,6 +25,8 @@ CLIFF = 1e6
 """Between two settings whose errors are further apart nothing is interpolated."""
 PATIENCE = 20.0
 """Seconds after which no finer setting of a solver is tried for its errors."""
+TARGETS = (1e-3, 1e-6, 1e-9, 1e-12)
+"""The errors at which costs are compared."""
 Point = tuple[float, float, float]
 """(setting, error of the orbit, error of the trajectory)"""
 
@@ -119,13 +121,14 @@ def accuracy(problem: Problem, solver: Solver, settings: tuple[float, ...] | Non
 def cost(problem: Problem, solver: Solver, count: int, points: list[Point], enough: float = 0.05) -> dict[str, Any]:
     """Microseconds for each trajectory: {"call", "step"}, or for each setting those for the time `problem.span`.
 
-    Where steps of another size cost something else: {"at": {setting: {"call", "step"}}}.
+    Where steps of another size cost something else: {"at": {setting: {"call", "step"}}}. Empty if nothing is measured.
     """
     if count >= MANY:
         count = min(count, solver.lanes, problem.lanes)
     starts = problem.starts(count).reshape(count, -1)
     if solver.varying:
-        return {"at": {repr(p[0]): _of_steps(problem, solver, starts, enough, p[0]) for p in points}}
+        found = {repr(p[0]): _of_steps(problem, solver, starts, enough, p[0]) for p in points}
+        return {"at": {setting: taken for setting, taken in found.items() if taken}}
     if solver.fixed:
         return _of_steps(problem, solver, starts, enough)
     span = problem.span if count < MANY else problem.lanes_span
@@ -161,6 +164,8 @@ def _of_steps(
         wanted = (1.5 * first + enough) * (many - few) / max(last - first, 0.02 * enough)
         many = int(min(20 * many, max(3 * many, 1.3 * wanted)))
         last = taken(many, 1)
+    else:
+        return {}  # the run ends before its steps are made, as at an equilibrium: it shows no cost of a step
     step = max(last - first, 0.0) / (many - few)
     scale = 1e6 / len(starts)
     return {"call": max(first - few * step, 0.0) * scale, "step": step * scale}
@@ -209,3 +214,24 @@ def drift(problem: Problem, solver: Solver, points: list[Point], target: float =
     y = solver.solve(problem, starts, problem.trajectory_span, settings[0], 1)[0]
     before, after = (problem.drift(x.reshape(-1, *problem.shape)) for x in (starts, y))
     return float(np.max(np.abs(after - before)))
+
+
+# -- from the tables -----------------------------------------------------------------------------------------
+def best(
+    problem: Problem, methods: list[dict[str, Any]], count: int, target: float, *, orbit: bool, call: bool
+) -> tuple[float, str]:
+    """The least cost of some methods at an error, and whose it is."""
+    found = [
+        (matched(problem, row["points"], row["costs"][str(count)], target, orbit=orbit, call=call), row["label"])
+        for row in methods
+        if str(count) in row.get("costs", {})
+    ]
+    return min(found, default=(math.inf, ""))
+
+
+def curve(problem: Problem, row: dict[str, Any], count: int, *, orbit: bool) -> list[tuple[float, float]]:
+    """(cost of the steps, error) along the settings of a method."""
+    measured = row["costs"][str(count)]
+    known = [p for p in row["points"] if is_known(measured, p[0])]
+    made = [(cost_of(problem, measured, p[0], call=False, orbit=orbit), p[1 if orbit else 2]) for p in known]
+    return [(c, e) for c, e in made if c > 0 and 0 < e < 3]

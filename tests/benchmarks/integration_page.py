@@ -9,14 +9,12 @@ from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
+from tests.benchmarks.integration_measure import TARGETS, best
 from tests.benchmarks.integration_methods import LLVM, SHORT
-from tests.benchmarks.integration_pictures import MANY, PEERS, RATIOS, draw, groups, image, multiples, picture_name
+from tests.benchmarks.integration_pictures import MANY, PEERS, RATIOS, groups, image, multiples, picture_name
 from tests.benchmarks.integration_problems import Problem, problems
-from tests.benchmarks.integration_targets import BY_HAND, RIVALS, TARGETS, best, ratios
 
 BEGIN, END = "<!-- integration: begin -->", "<!-- integration: end -->"
-FLOOR = (0.5, 1.0, 1.0, 1.0)
-"""How many times cheaper than a Runge-Kutta method by hand the steps should be, at the errors of the columns."""
 EXPONENTS = ("10⁻³", "10⁻⁶", "10⁻⁹", "10⁻¹²")
 BY, NARROW = "its cheapest method", "\u00a0"
 """What the row of methods is called, and a space at which no cell is broken."""
@@ -89,13 +87,9 @@ def problem_part(problem: Problem, data: dict[str, Any]) -> list[str]:
         lines += table(["program", "call", *wide], rows)
     few = [(1e-6, True), (1e-3, False), (1e-6, False), (1e-12, False)]
     names = [f"{orbit if on_orbit else 'trajectory'} to{NARROW}{EXPONENTS[TARGETS.index(t)]}" for t, on_orbit in few]
-    for count in (1, 10):
-        which = "One trajectory, µs" if count == 1 else f"{count} trajectories, µs for each of them"
-        lines += [f"{which} to T = {problem.span:.0f} (errors of trajectories{span or ' too'}):", ""]
-        rows = [
-            line for name, rows in found.items() if _has(rows, count) for line in _rows(name, rows, problem, count, few)
-        ]
-        lines += table(["program", "call", *names], rows)
+    lines += [f"One trajectory, µs to T = {problem.span:.0f} (errors of trajectories{span or ' too'}):", ""]
+    one = [line for name, rows in found.items() if _has(rows, 1) for line in _rows(name, rows, problem, 1, few)]
+    lines += table(["program", "call", *names], one)
     return lines
 
 
@@ -117,7 +111,8 @@ def conditions_part(data: dict[str, Any]) -> list[str]:
         "* The settings of each method are refined until the error of a column is reached, and costs are interpolated "
         "between settings. If a cost is the same for several errors, a setting coarser than the coarsest tested one "
         "might reach the larger of them.",
-        "* Compile time and traces are excluded, and costs in the table of targets are those of whole calls.",
+        "* Compile time and traces are excluded. Costs of whole calls by tolerance, also of 10 trajectories, are in "
+        "[](performance.md).",
         '* The column "call" is the cost of a call besides its steps, per trajectory. Each method of liehom is a '
         "`Propagator` that was made once, as the objects of the other programs are.",
         '* The other columns are the cost of the steps. For a program with "included" in the column "call" they '
@@ -167,31 +162,7 @@ def targets_part(data: dict[str, Any]) -> list[str]:
     rows.append(["order 6 on S⁴ compiled in 5 s, and kept", text, verdict(first, 5)])
     text = f"{shown(k['one Euler'])} ns; corrected to order 2 {shown(k['one corrected'])} ns"
     rows.append(["one trajectory: below 100 ns for an Euler step", text, verdict(k["one corrected"], 100)])
-    best_of = "than the best of heyoka, DOP853 and diffrax"
-    lines = [
-        "### Targets", "", *table(["target", "measured", ""], rows),
-        "The next tables have the costs of other programs divided by those of liehom, of whole calls. The four numbers "
-        f"of a cell are for the errors {', '.join(EXPONENTS)}, and ∞ means that the other program does not reach it. A "
-        "bold number reaches the target.", "",
-    ]  # fmt: skip
-    for what, orbit, rivals, needs in (
-        (f"Orbits, 3 times cheaper {best_of}", True, RIVALS, (3.0,) * 4),
-        (f"Trajectories, 2 times cheaper {best_of}", False, RIVALS, (2.0,) * 4),
-        ("Trajectories, at 10⁻³ at most twice RK4 in numba by hand, and cheaper from 10⁻⁶ on", False, BY_HAND, FLOOR),
-    ):
-        lines += [f"{what}:", "", *table(["problem", "N = 1", "N = 10", "N = 10,000"], [
-            [problem.name, *(_reached(ratios(problem, data["problems"][problem.name]["methods"], count, orbit=orbit,
-                                             call=True, rivals=rivals), needs) for count in (1, 10, MANY))]
-            for problem in problems()
-            if problem.name in data["problems"] and problem.full and not problem.coupled
-        ])]  # fmt: skip
-    return lines
-
-
-def _reached(found: Sequence[float], needs: Sequence[float]) -> str:
-    """Ratios in a cell, those that reach their target in bold."""
-    texts = ["∞" if r == math.inf else shown(r) for r in found]
-    return " ".join(f"**{t}**" if r >= need else t for t, r, need in zip(texts, found, needs, strict=True))
+    return ["### Compiled steps, numpy and C", "", *table(["target", "measured", ""], rows)]
 
 
 def growth_part(data: dict[str, Any]) -> list[str]:
@@ -323,8 +294,7 @@ def _least_calls(data: dict[str, Any]) -> str:
 
 
 def write(data: dict[str, Any], docs: Path) -> None:
-    """Write the parts between the markers of both pages, and the pictures."""
-    draw(data, docs / "_static")
+    """Write the parts between the markers of both pages."""
     for name, part in PARTS.items():
         page = docs / name
         text = page.read_text(encoding="utf-8")

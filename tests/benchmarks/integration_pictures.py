@@ -1,9 +1,10 @@
 """Pictures of the measured figures of integration, in a light and a dark version; nothing is measured again.
 
-`python -m tests.benchmarks.report --render` draws them from docs/_static/integration.json. They are as wide as the text
-column of a phone allows with readable letters, so panels are below one another.
+The build of the pages draws them from docs/_static/integration.json. They are as wide as the text column of a phone
+allows with readable letters, so panels are below one another.
 """
 
+import json
 import math
 from collections.abc import Iterator
 from pathlib import Path
@@ -11,10 +12,11 @@ from typing import Any
 
 from liehom.plotting.canvas import MARKERS, current_colours, matplotlib_module, muted_colour, new_figure, style
 from liehom.plotting.error_plot import Curve, draw_curve
+from tests.benchmarks.integration_measure import best, curve
 from tests.benchmarks.integration_methods import EAGER, IN_JIT, JAX, LLVM
 from tests.benchmarks.integration_problems import Problem, problems
-from tests.benchmarks.integration_targets import best, curve
 
+DATA = Path(__file__).resolve().parents[2] / "docs" / "_static" / "integration.json"
 MANY = 10_000
 RATIOS = "cost_ratios"
 KINDS = ("light", "dark")
@@ -42,13 +44,16 @@ def picture_name(problem: Problem) -> str:
 
 
 def image(name: str, words: str) -> list[str]:
-    """Lines of a page with both versions of a picture, of which the page shows one."""
-    options = [f":alt: {words}", ":width: 34em"]
-    return [
-        line
-        for kind in KINDS
-        for line in (f"```{{image}} _static/{name}_{kind}.svg", *options, f":class: only-{kind}", "```", "")
-    ]
+    """Lines of a page that show a picture."""
+    return [f"```{{picture}} {name}", f":alt: {words}", ":width: 34em", "```", ""]
+
+
+def draw_for_pages(folder: Path) -> None:
+    """Write the pictures of the pages into a folder, if one is missing or older than the figures or this module."""
+    changed = max(path.stat().st_mtime for path in (DATA, Path(__file__)))
+    files = [folder / f"{name}_{kind}.svg" for name in (*map(picture_name, problems()), RATIOS) for kind in KINDS]
+    if not all(file.exists() and file.stat().st_mtime > changed for file in files):
+        draw(json.loads(DATA.read_text(encoding="utf-8")), folder)
 
 
 def draw(data: dict[str, Any], folder: Path) -> None:

@@ -1,10 +1,9 @@
-"""The targets for compiled integration, as ratios measured in one run.
+"""Targets for compiled integration, measured in one run.
 
-(a) the compiled step against a kernel in C, (b) orbits and (c) trajectories against peers, (d) numpy arrays against
-numpy by hand, (e) compile time, (f) one trajectory, (g) exponents.
+(a) the compiled step against a kernel in C, (b) numpy arrays against numpy by hand, (c) compile time, (d) one
+trajectory.
 """
 
-import math
 import os
 import tempfile
 import time
@@ -18,16 +17,10 @@ import liehom as lh
 from liehom.flow.engines.traced_step import traced_step
 from liehom.flow.tracing.machine import Kernel, padded
 from tests.benchmarks import test_compiled as by_hand
-from tests.benchmarks.integration_measure import cost_of, is_known, matched
-from tests.benchmarks.integration_problems import Problem
-
-TARGETS = (1e-3, 1e-6, 1e-9, 1e-12)
-RIVALS = ("heyoka.py", "scipy DOP853", "diffrax")
-BY_HAND = ("numba RK4 by hand",)
 
 
 def kernels(*, tiny: bool = False) -> dict[str, Any]:
-    """(a), (d), (e), (f)."""
+    """(a) to (d)."""
     rounds = 1 if tiny else 30
     found: dict[str, Any] = {}
     m = by_hand.starts(padded(by_hand.LANES, 16))
@@ -96,44 +89,3 @@ def compile_time(order: int) -> dict[str, float]:
             os.environ.pop("LIEHOM_CACHE_DIR")
             if before is not None:
                 os.environ["LIEHOM_CACHE_DIR"] = before
-
-
-# -- from the tables -----------------------------------------------------------------------------------------
-def best(
-    problem: Problem, methods: list[dict[str, Any]], count: int, target: float, *, orbit: bool, call: bool
-) -> tuple[float, str]:
-    """The least cost of some methods at an error, and whose it is."""
-    found = [
-        (matched(problem, row["points"], row["costs"][str(count)], target, orbit=orbit, call=call), row["label"])
-        for row in methods
-        if str(count) in row.get("costs", {})
-    ]
-    return min(found, default=(math.inf, ""))
-
-
-def ratios(
-    problem: Problem,
-    methods: list[dict[str, Any]],
-    count: int,
-    *,
-    orbit: bool,
-    call: bool,
-    rivals: tuple[str, ...] = RIVALS,
-) -> list[float]:
-    """How many times more the best rival costs than the best of liehom, at each of the errors."""
-    ours = [row for row in methods if row["group"].startswith("liehom")]
-    theirs = [row for row in methods if row["group"] in rivals]
-    found = []
-    for target in TARGETS:
-        rival = best(problem, theirs, count, target, orbit=orbit, call=call)[0]
-        mine = best(problem, ours, count, target, orbit=orbit, call=call)[0]
-        found.append(rival / mine if math.isfinite(mine) else 0.0)
-    return found
-
-
-def curve(problem: Problem, row: dict[str, Any], count: int, *, orbit: bool) -> list[tuple[float, float]]:
-    """(cost of the steps, error) along the settings of a method."""
-    measured = row["costs"][str(count)]
-    known = [p for p in row["points"] if is_known(measured, p[0])]
-    made = [(cost_of(problem, measured, p[0], call=False, orbit=orbit), p[1 if orbit else 2]) for p in known]
-    return [(c, e) for c, e in made if c > 0 and 0 < e < 3]

@@ -1,9 +1,9 @@
 """Integration beside its peers: `python -m tests.benchmarks.report [--only NAME ...] [--long] [--render]`.
 
-Measures on one core, keeps the figures in docs/_static/integration.json after every problem, draws pictures beside
-them, and writes the parts of docs/performance-integration.md and docs/performance.md between the marks.  `--only`
-measures some problems, or "targets", "growth", "long", and keeps the other figures; `--render` measures nothing.
-`--long` adds T = 10^4 and a chain of 10^4 spins.
+Measures on one core, keeps the figures in docs/_static/integration.json after every problem, and writes the parts of
+docs/performance-integration.md and docs/performance.md between the marks; the build of the pages draws the pictures.
+`--only` measures some problems, or "targets", "growth", "long", and keeps the other figures; `--render` measures
+nothing. `--long` adds T = 10^4 and a chain of 10^4 spins.
 """
 
 import argparse
@@ -16,8 +16,9 @@ import warnings
 from pathlib import Path
 from typing import Any
 
+from tests.benchmarks.integration_pictures import DATA
+
 DOCS = Path(__file__).resolve().parents[2] / "docs"
-DATA = DOCS / "_static" / "integration.json"
 PROGRAMS = ("numpy", "scipy", "llvmlite", "numba", "jax", "heyoka", "diffrax")
 SECTIONS = ("targets", "growth", "long")
 
@@ -69,7 +70,8 @@ def measured(problem: Any, counts: tuple[int, ...]) -> dict[str, Any]:
             row["drift"] = drift(problem, solver, known[solver.name])
         row["points"] = points = known[(solver.accuracy or solver).name]
         sizes = [n for n in counts if n in solver.counts and not (problem.coupled and n > 10)]
-        row["costs"] = {str(n): cost(problem, solver, n, points) for n in sizes if points}
+        costs = {str(n): cost(problem, solver, n, points) for n in sizes if points}
+        row["costs"] = {n: taken for n, taken in costs.items() if taken}
         print(f"{problem.name}: {solver.name}, {time.process_time() - begin:.0f} s", flush=True)
     return {"title": problem.title, "methods": rows, "load": round(os.getloadavg()[0], 1)}
 

@@ -1,9 +1,9 @@
 """Stability of corrected steps on stiff fields: limits on three manifolds, and regions in the plane of lambda dt.
 
-    python -m tests.benchmarks.stability [--page docs/stiff.md] [--pictures docs/_static]
+    python -m tests.benchmarks.stability [--page docs/stiff.md]
 
-prints a table; with --page it replaces the table between the markers of the page, with --pictures it draws
-stability_light.svg and stability_dark.svg.
+prints a table; with --page it replaces the table between the markers of the page. The build of the pages draws the
+regions.
 """
 
 import argparse
@@ -133,9 +133,15 @@ def regions() -> list[tuple[str, list[tuple[str, Any]]]]:
         for name in names:
             values = np.concatenate([amplification(STEP_LIST[name], row, clock=clock)[None] for row in z])
             maps.append((name, np.concatenate([values[:0:-1], values])))
-            print(title, name, flush=True)
         made.append((title, maps))
     return made
+
+
+def draw_for_pages(folder: Path) -> None:
+    """Write stability_light.svg and stability_dark.svg, if one is missing or older than this module."""
+    files, changed = [folder / f"stability_{kind}.svg" for kind in ("light", "dark")], Path(__file__).stat().st_mtime
+    if not all(file.exists() and file.stat().st_mtime > changed for file in files):
+        draw(regions(), folder)
 
 
 def draw(found: list[tuple[str, list[tuple[str, Any]]]], folder: Path) -> None:
@@ -164,10 +170,7 @@ def draw(found: list[tuple[str, list[tuple[str, Any]]]], folder: Path) -> None:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--page", type=Path)
-    parser.add_argument("--pictures", type=Path)
     given = parser.parse_args()
-    if given.pictures is not None:
-        draw(regions(), given.pictures)
     made = table()
     if given.page is not None:
         before, rest = given.page.read_text(encoding="utf-8").split(MARKERS[0])

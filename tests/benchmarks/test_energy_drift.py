@@ -1,10 +1,11 @@
 """The benchmark of energies over many steps, with few of them: its table, its page and its plots."""
 
+import json
 from pathlib import Path
 
 import pytest
 
-from tests.benchmarks.energy_drift import MARKERS, body, draw, measured, spin, table
+from tests.benchmarks.energy_drift import DATA, MARKERS, body, curves, draw, measured, spin, table
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -22,8 +23,8 @@ def test_symplectic_rows_do_not_drift_and_others_do() -> None:
 
 def test_plots_are_drawn_for_both_themes(tmp_path: Path) -> None:
     pytest.importorskip("matplotlib")
-    system = body()
-    draw([(system, [measured(system, "Heun", 100)]), (system, [measured(system, "Splitting", 100)])], tmp_path)
+    found = [(system, [measured(system, "Heun", 100)]) for system in (spin(), body())]
+    draw(curves(found), tmp_path)
     assert sorted(path.name for path in tmp_path.iterdir()) == ["energy_drift_dark.svg", "energy_drift_light.svg"]
 
 
@@ -32,3 +33,4 @@ def test_the_page_has_a_row_for_every_step() -> None:
     measured_part = page[page.index(MARKERS[0]) : page.index(MARKERS[1])]
     for system in (spin(), body()):
         assert all(f"| `{name}` |" in measured_part for name in system.steps)
+        assert list(json.loads(DATA.read_text(encoding="utf-8"))[system.title]) == list(system.steps)

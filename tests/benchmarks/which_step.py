@@ -7,10 +7,10 @@ for each of 10,000 trajectories to T = 100.
 import json
 from pathlib import Path
 
+from tests.benchmarks.integration_measure import best
 from tests.benchmarks.integration_methods import LLVM
 from tests.benchmarks.integration_page import shown, table
 from tests.benchmarks.integration_problems import problems
-from tests.benchmarks.integration_targets import best
 
 DATA = Path(__file__).resolve().parents[2] / "docs" / "_static" / "integration.json"
 STEPS = {

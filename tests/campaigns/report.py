@@ -15,7 +15,6 @@ from typing import Any
 
 import liehom as lh
 from tests.campaigns import certificates, doors
-from tests.campaigns.peers import LIBRARIES
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 PAGE = ROOT / "docs" / "reliability.md"
@@ -70,23 +69,23 @@ def doors_table() -> str:
 
 
 def damage_table() -> str:
-    """One row for each file, one column for each damage."""
+    """One row for each file."""
     data = figures("damage")
     if data is None:
         return ""
-    found = {tuple(row["class"].split("; ")): row for row in data["rows"]}
-    files, damages = (list(dict.fromkeys(key[k] for key in found)) for k in (0, 1))
-
-    def cell(file: str, damage: str) -> str:
-        row = found.get((file, damage))
-        return "-" if row is None else "/".join(str(row[key]) for key in ("noticed", "identical", "believed"))
-
-    sums = [sum(row[key] for row in found.values()) for key in ("noticed", "identical", "believed")]
+    outcomes = ("noticed", "identical", "believed")
+    found: dict[str, list[int]] = {}
+    for row in data["rows"]:
+        sums = found.setdefault(row["class"].split("; ")[0], [0, 0, 0])
+        found[row["class"].split("; ")[0]] = [x + row[key] for x, key in zip(sums, outcomes, strict=True)]
+    found["together"] = [sum(column) for column in zip(*found.values(), strict=True)]
     return (
-        f"{data['count']:,} damages, seed {data['seed']} (`tests/campaigns/damage.py`). {sums[0]:,} were "
-        f"noticed, {sums[1]:,} left the content as it was, and {sums[2]:,} were believed. The cells have these three "
-        "numbers.\n\n"
-    ) + table(["file", *damages], [[file, *(cell(file, damage) for damage in damages)] for file in files])
+        f"{data['count']:,} damages, seed {data['seed']} (`tests/campaigns/damage.py`): bytes appended, cut, flipped, "
+        "replaced or zeroed, numbers edited, files exchanged.\n\n"
+    ) + table(
+        ["file", "noticed", "content as it was", "believed"],
+        [[file, *(f"{x:,}" for x in counts)] for file, counts in found.items()],
+    )
 
 
 def certificates_table() -> str:
@@ -94,21 +93,11 @@ def certificates_table() -> str:
     return "" if data is None else certificates.table(certificates.Campaign.from_json(data))
 
 
-def peers_table() -> str:
-    data = figures("peers")
-    if data is None:
-        return ""
-    names = [name if name == "liehom" else f"{name} {data['versions'][name]}" for name in LIBRARIES]
-    rows = [[row["input"], *(row.get(name, "") for name in LIBRARIES)] for row in data["rows"]]
-    return table(["input", *names], rows, numbers=False)
-
-
 TABLES: dict[str, Callable[[], str]] = {
     "limits": limits_table,
     "doors": doors_table,
     "certificates": certificates_table,
     "damage": damage_table,
-    "peers": peers_table,
 }
 
 

@@ -6,7 +6,16 @@ from pathlib import Path
 
 import pytest
 
-from tests.journeys import engineer, geometer, lecturer, particle_physicist, quantum_physicist, researcher
+from tests.journeys import (
+    engineer,
+    geometer,
+    lecturer,
+    particle_physicist,
+    physics_student,
+    quantum_physicist,
+    researcher,
+    roboticist,
+)
 
 
 def test_an_arm_moves_as_products_of_matrix_exponentials_do() -> None:
@@ -88,6 +97,43 @@ def test_a_body_flips_as_elliptic_integrals_say(tmp_path: Path) -> None:
 
 def test_real_algebras_of_dimension_three_are_found_in_ugly_bases() -> None:
     lecturer.three_dimensional()
+
+
+def test_the_kepler_problem_has_its_three_symmetries() -> None:
+    names, casimirs = zip(*physics_student.hydrogen(), strict=True)
+    assert names == ("so(3) + so(3)", "so(3) ⋉ R^3", "sl(2,C)")
+    assert all("A1*L1 + A2*L2 + A3*L3" in text for text in casimirs)
+
+
+def test_a_driven_qubit_turns_over_as_rabi_says() -> None:
+    beside_scipy, beside_rabi = physics_student.rabi()
+    assert beside_scipy < 1e-7 and 1e-3 < beside_rabi < 0.05
+
+
+def test_three_quarks_are_the_multiplets_of_the_textbooks() -> None:
+    assert physics_student.eightfold_way() == (
+        [1, 8, 8, 10],
+        "3_0 + 2_1 + 2_-1 + 1_0",
+        "4_1 + 3_0 + 2_-1 + 1_-2",
+    )
+
+
+def test_newton_finds_the_joints_of_an_arm() -> None:
+    iterations, error = roboticist.inverse_kinematics()
+    assert iterations < 8 and error < 1e-12
+
+
+def test_an_attitude_from_samples_and_a_mean_are_those_of_scipy() -> None:
+    attitude, mean = roboticist.attitude_from_samples()
+    assert attitude < 1e-6 and mean < 1e-3
+
+
+def test_what_steers_is_controllable() -> None:
+    assert roboticist.steering() == [
+        "so(3): controllable",
+        "so(3) ⋉ R^3: controllable",
+        "so(3) ⋉ R^3: accessible",
+    ]
 
 
 READERS = ["engineer", "quantum_physicist", "geometer", "particle_physicist", "researcher", "lecturer"]

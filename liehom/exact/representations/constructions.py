@@ -29,6 +29,7 @@ from liehom.exact.algebra.linear.complex_matrices import (
     list_of_matrices,
     real_matrices,
 )
+from liehom.exact.algebra.linear.linear_bases import heisenberg as heisenberg_matrices
 from liehom.exact.algebra.linear.named_matrices import (
     FAMILY_MATRICES,
     classical_matrices,
@@ -49,7 +50,7 @@ from liehom.exact.scalars.rational import QQ
 
 _CLASSICAL = re.compile(r"(gl|sl|so|su|u|sp|spin)\(([0-9]+)(?:,([0-9]+|[RCH]))?\)")
 _COMPLEX = re.compile(r"s?u\([0-9]+(,[0-9]+)?\)|(gl|sl|so|sp)\([0-9]+,C\)")
-_FAMILY = re.compile(r"(e|aff|galilei|so\*|upper|strict)\(([0-9]+)\)|(iso)\(([0-9]+),([0-9]+)\)")
+_FAMILY = re.compile(r"(e|aff|galilei|so\*|upper|strict|heisenberg)\(([0-9]+)\)|(iso)\(([0-9]+),([0-9]+)\)")
 
 
 def defining(algebra: LieAlgebra | str) -> Representation:
@@ -63,8 +64,8 @@ def defining(algebra: LieAlgebra | str) -> Representation:
         An algebra whose name is one of 'gl(n)', 'sl(n)' (also 'sl(n,C)', 'sl(n,H)'), 'so(p,q)', 'so(n,C)', 'so*(2n)',
         'su(p,q)', 'u(p,q)', 'sp(p,q)' (quaternionic), 'sp(2n,R)', 'sp(2n,C)', 'spin(p,q)', or an exceptional one such
         as 'g2(2)', 'f4', 'e6(-26)', in the basis of its standard matrices; or 'e(n)', 'iso(p,q)', 'aff(n)',
-        'galilei(n)', 'upper(n)', 'strict(n)', in the basis of its constructor, such as `liehom.euclidean`; or such a
-        name.
+        'galilei(n)', 'heisenberg(n)', 'upper(n)', 'strict(n)', in the basis of its constructor, such as
+        `liehom.euclidean`; or such a name.
 
     Raises
     ------
@@ -149,7 +150,8 @@ def standard_matrices(name: str | None) -> IntegerArray:
         return classical_matrices(kind, int(first), parameter)
     if match := _FAMILY.fullmatch(text):
         kind, *numbers = filter(None, match.groups())
-        return FAMILY_MATRICES[kind](*map(int, numbers))
+        build = heisenberg_matrices if kind == "heisenberg" else FAMILY_MATRICES[kind]
+        return build(*map(int, numbers))
     if text[:2] in ("g2", "f4", "e6"):
         return exceptional_matrices(text)
     known = "so(4), so(3,1), su(2), sl(3), sl(2,C), gl(2), sp(2), sp(4,R), so*(6), spin(7), g2, f4, e6(-26), e(3)"

@@ -141,6 +141,10 @@ class SO3(_Motions):
         """Unit quaternions (..., 4), scalar part first, of the sign for which the largest entry is positive."""
         return matrix_to_quaternion(self.matrix)
 
+    def as_quaternion_xyzw(self) -> Values:
+        """Unit quaternions (..., 4), scalar part last, as scipy and ROS write them."""
+        return namespace(self.matrix).roll(self.as_quaternion_wxyz(), -1, axis=-1)
+
 
 @final
 class SE3(_Motions):

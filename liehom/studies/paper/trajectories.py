@@ -36,15 +36,14 @@ ZERO = 1e-12
 
 
 def figure1(quick: bool = False, seed: int = FIGURE_SEED) -> Reproduction:
-    """Figure 1: trajectories on the sphere for a triaxial and an axisymmetric body.
+    """Figure 1: trajectories on the sphere for a triaxial and an axisymmetric body, whole also if `quick`.
 
     Examples
     --------
     >>> figure1(quick=True).tables["bodies"].columns[:2]
     ('body', 'moments')
     """
-    span = 20.0 if quick else SPAN
-    curves = {(kind, name): trajectory(name, _one_body(kind, seed), span) for kind in KINDS for name in EULER}
+    curves = {(kind, name): trajectory(name, _one_body(kind, seed), SPAN) for kind in KINDS for name in EULER}
     points = [
         (kind, name, k + 1, step * DT, *map(float, curve[step, :, k]))
         for (kind, name), curve in curves.items()
@@ -59,7 +58,7 @@ def figure1(quick: bool = False, seed: int = FIGURE_SEED) -> Reproduction:
     off = max(float(np.abs((curve**2).sum(axis=1) - 1).max()) for curve in curves.values())
     return Reproduction(
         "fig1",
-        f"Figure 1: trajectories of the forward Euler method, [0, {span:g}], dt = {DT}",
+        f"Figure 1: trajectories of the forward Euler method, [0, {SPAN:g}], dt = {DT}",
         _described(seed),
         {
             "": Table(

@@ -166,7 +166,12 @@ def test_defining_of_affine_maps(algebra: lh.LieAlgebra, linear: str, size: int)
 
 
 def test_defining_of_other_families() -> None:
-    for algebra, size in ((lh.galilei(3), 5), (lh.galilei(1), 3), (lh.algebra.upper_triangular(3), 3)):
+    for algebra, size in (
+        (lh.galilei(3), 5),
+        (lh.galilei(1), 3),
+        (lh.algebra.upper_triangular(3), 3),
+        (lh.heisenberg(2), 4),
+    ):
         rho = lh.defining(algebra)
         assert rho.algebra is algebra and rho.size == size
         lh.Representation(algebra, rho.matrices)  # [rho x, rho y] = rho [x, y] is proved again

@@ -32,6 +32,7 @@ def test_rotations_are_those_of_scipy(x):
     assert near(own.as_matrix(), peer.as_matrix())
     assert near(lh.SO3.from_quaternion_xyzw(peer.as_quat()).matrix, peer.as_matrix())
     assert near(lh.SO3.from_quaternion_wxyz(own.as_quaternion_wxyz()).matrix, own.matrix)
+    assert near(Rotation.from_quat(own.as_quaternion_xyzw()).as_matrix(), own.matrix)
 
 
 @given(vectors)

@@ -228,6 +228,13 @@ def galilei(n: int) -> IntegerArray:
     return np.concatenate([rotations, [*shifts, unit(n + 2, n, n + 1)]])
 
 
+def heisenberg(n: int) -> IntegerArray:
+    """Basis of the Heisenberg algebra on R^{n+2}: the x_i in the first row, the y_i in the last column, z in both."""
+    require_basis(2 * n + 1, n + 2)
+    rows, columns = ([unit(n + 2, 0, i + 1) for i in range(n)], [unit(n + 2, i + 1, n + 1) for i in range(n)])
+    return stack([*rows, *columns, unit(n + 2, 0, n + 1)], n + 2)
+
+
 def complex_gl(n: int, *, parameter: int = -1) -> IntegerArray:
     """Basis of gl(n, C), or of gl(n) over Q(sqrt(parameter)), on R^{2n}."""
     return complexify(gl(n), parameter=parameter)

@@ -197,6 +197,9 @@ def _with_levi_factor(algebra: LieAlgebra) -> _Part:
 
 
 def _undecided(algebra: LieAlgebra) -> NoReturn:
+    if algebra.is_semisimple():
+        form = algebra.real_form()
+        raise UndecidedError(f"no map to a named algebra is made for the simple ideal {form}; use structure_name(g)")
     known = "; ".join(f"{name} {of(algebra)}" for name, of in _INVARIANTS.items() if of is not _traces)
     raise UndecidedError(f"no name is known for an indecomposable ideal: {known}")
 

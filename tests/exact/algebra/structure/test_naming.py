@@ -195,3 +195,8 @@ def test_fields_must_be_comparable() -> None:
     one, two = lh.low_dimensional(3, 7, "sqrt(2)"), lh.low_dimensional(3, 7, "sqrt(3)")
     with pytest.raises(InputError, match="bring them to one field"):
         one.isomorphism(two)
+
+
+def test_a_simple_ideal_without_a_row_is_named_by_the_error() -> None:
+    with pytest.raises(UndecidedError, match=r"no map .* the simple ideal sl\(2,C\); use structure_name\(g\)"):
+        lh.so(3, 1).identify()
