@@ -23,6 +23,7 @@ from liehom.base.errors import (
 )
 from liehom.base.objects import Displayed, Immutable
 from liehom.base.typing import VectorLike
+from liehom.exact.algebra import structure
 from liehom.exact.algebra.core.lie_algebra import LieAlgebra
 from liehom.exact.algebra.core.tables import RowsLike, coefficients
 from liehom.exact.scalars.exact_field import ExactMatrix
@@ -253,9 +254,7 @@ class Subalgebra(Displayed, Immutable):
         >>> [(p.kind, p.killing_signature) for p in ideal.places()]
         [('complex', (3, 3))]
         """
-        from liehom.exact.algebra.structure.ideals import places
-
-        return places(self)
+        return structure.ideals.places(self)
 
     def real_ideals(self) -> list[Subalgebra]:
         """The simple ideals over the reals of a subalgebra that is simple over its field F, over extensions of F.
@@ -279,9 +278,7 @@ class Subalgebra(Displayed, Immutable):
         >>> ideal.real_ideals()
         [<subalgebra of dimension 6 in so(3,1) over QQ>]
         """
-        from liehom.exact.algebra.structure.ideals import real_ideals
-
-        return real_ideals(self)
+        return structure.ideals.real_ideals(self)
 
     # -- printing ----------------------------------------------------------------------------------------
     def __repr__(self) -> str:
