@@ -340,12 +340,7 @@ EXAMPLES = (
 
 
 def algebra(name: str) -> LieAlgebra:
-    """The Lie algebra with a catalogue name; '+' means the direct sum.
-
-    Parameters
-    ----------
-    name : str
-        Such as 'so(3)', 'su(2,1)', 'sp(4,R)', 'f4(-20)', 'e(3)', 'heisenberg(2)', 'R^2', 'so(3)+sl(2)'.
+    """The Lie algebra with a catalogue name such as 'sp(4,R)' or 'e(3)'; '+' means the direct sum, as in 'so(3)+R'.
 
     Raises
     ------

@@ -237,11 +237,6 @@ def failure_cone(
     certificate : optional
         A verified certificate of kind 'dominance' or 'commutant'; its eigenspace W is listed with a numerical basis.
 
-    Raises
-    ------
-    InputError
-        If a form is zero or not invariant, or a subspace is zero, not proper or not invariant.
-
     Notes
     -----
     For a full pair with an invariant form the list has the zeros of the form, which is 0 only.

@@ -225,11 +225,7 @@ def so_form(form: MatrixLike, *, name: str | None = None) -> LieAlgebra:
 def sp_form(form: MatrixLike, *, name: str | None = None) -> LieAlgebra:
     """The symplectic algebra {X : X^T J + J X = 0} of a skew-symmetric form J, which may be degenerate.
 
-    Parameters
-    ----------
-    form : (n, n) array_like
-        The skew-symmetric matrix J, with entries as for `so_form`.
-    name : str, optional
+    J has shape (n, n) and entries as for `so_form`.
 
     Returns
     -------

@@ -144,13 +144,7 @@ def oscillator(n: int = 1, frequencies: Sequence[ScalarLike] | None = None) -> L
 
 
 def almost_abelian(matrix: MatrixLike, *, name: str | None = None) -> LieAlgebra:
-    """The Lie algebra R + R^n with [t, x_j] = sum_i A_ij x_i, in which R^n is an abelian ideal.
-
-    Parameters
-    ----------
-    matrix : (n, n) array_like
-        A, not empty; its entries determine the field.
-    name : str, optional
+    """The Lie algebra R + R^n with [t, x_j] = sum_i A_ij x_i for a matrix A (n, n), in which R^n is an abelian ideal.
 
     Notes
     -----
@@ -401,13 +395,7 @@ def affine(n: int) -> LieAlgebra:
 
 
 def affine_of(matrices: MatricesLike, *, name: str | None = None) -> LieAlgebra:
-    """The affine algebra h + V of a linear Lie algebra h: first the matrices, then the translations of V.
-
-    Parameters
-    ----------
-    matrices : sequence of (N, N) array_like
-        A basis of h, closed under commutators; at least one matrix.
-    name : str, optional
+    """The affine algebra h + V of a linear Lie algebra h: first its basis of matrices (N, N), then the translations.
 
     Notes
     -----

@@ -624,18 +624,7 @@ class LieAlgebra(Displayed, Immutable):
 
     # -- algebras made of this one -----------------------------------------------------------------------
     def quotient(self, ideal: Subalgebra | RowsLike, *, name: str | None = None) -> LieAlgebra:
-        """The quotient g/h by an ideal h.
-
-        Parameters
-        ----------
-        ideal : Subalgebra of g, or rows (k, n)
-            A basis of h.
-        name : str, optional
-
-        Returns
-        -------
-        LieAlgebra
-            In the basis to which `quotient_map` maps a complement of h.
+        """The quotient g/h by an ideal h, in the basis to which `quotient_map` maps a complement of h.
 
         Raises
         ------
@@ -798,12 +787,7 @@ class LieAlgebra(Displayed, Immutable):
         return structure.casimirs.index(self)
 
     def casimirs(self, max_degree: int) -> Casimirs:
-        """Functionally independent polynomial invariants of the coadjoint action (generalized Casimir operators).
-
-        Parameters
-        ----------
-        max_degree : int
-            The largest degree of a polynomial.
+        """Functionally independent polynomial invariants of the coadjoint action (Casimir operators) up to a degree.
 
         Returns
         -------
@@ -902,15 +886,8 @@ class LieAlgebra(Displayed, Immutable):
     def root_space_decomposition(self, cartan: Subalgebra | None = None) -> RootSpaceDecomposition:
         """The root space decomposition of a semisimple algebra: h and the V_alpha with [h, v] = alpha(h) v.
 
-        Parameters
-        ----------
-        cartan : Subalgebra, optional
-            A Cartan subalgebra h; by default `cartan_subalgebra`.
-
-        Returns
-        -------
-        RootSpaceDecomposition
-            Root spaces of roots that are conjugate over the field are not separated: their sum is one entry.
+        h is by default `cartan_subalgebra`. Root spaces of roots that are conjugate over the field are not separated:
+        their sum is one entry.
 
         Examples
         --------

@@ -37,12 +37,7 @@ class RootBrackets(NamedTuple):
 
 
 def chevalley(type_name: str) -> LieAlgebra:
-    """The split semisimple Lie algebra of a type, over QQ, in its Chevalley basis.
-
-    Parameters
-    ----------
-    type_name : str
-        'A1', ..., 'E8', or a sum such as 'A2 + G2'.
+    """The split semisimple Lie algebra of a type such as 'E8' or 'A2 + G2', over QQ, in its Chevalley basis.
 
     Notes
     -----
@@ -271,12 +266,7 @@ def bracket_numbers(type_name: str) -> IntegerArray:
 
 
 def compact_form(type_name: str) -> LieAlgebra:
-    """The compact semisimple Lie algebra of a type, over QQ, with integer structure constants.
-
-    Parameters
-    ----------
-    type_name : str
-        'A1', ..., 'E8', or a sum such as 'A2 + G2'.
+    """The compact semisimple Lie algebra of a type such as 'E8' or 'A2 + G2', over QQ, with integer constants.
 
     Notes
     -----

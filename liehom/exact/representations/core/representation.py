@@ -292,12 +292,7 @@ class Representation(Displayed, Immutable):
         return n
 
     def real_point(self, point: VectorLike | MatrixLike) -> list[ScalarLike]:
-        """The N real coordinates of a point, which may be complex.
-
-        Parameters
-        ----------
-        point : array_like
-            N real numbers; on C^n also n complex numbers; on Hermitian matrices also a Hermitian matrix (n, n).
+        """The N real coordinates of a point, given by them, on C^n also by n complex numbers, or by a Hermitian matrix.
 
         Examples
         --------
@@ -340,8 +335,6 @@ class Representation(Displayed, Immutable):
         ------
         NotInSpanError
             If the matrix is not in rho(g); `residual` is its relative distance from rho(g).
-        InputError
-            If rho is not faithful, so that x is not unique.
 
         Examples
         --------
@@ -394,8 +387,6 @@ class Representation(Displayed, Immutable):
 
         Raises
         ------
-        InputError
-            If a coordinate has free symbols; see `symbolic_isotropy`.
         UndecidedError
             If floats do not decide the dimension: a singular value is within a factor 100 of the error.
 
@@ -425,8 +416,6 @@ class Representation(Displayed, Immutable):
 
         Raises
         ------
-        InputError
-            If a coordinate is not a rational function of the symbols (write cos and sin by a rational parameter).
         FieldError
             If a coefficient of the point is a float.
 
@@ -589,11 +578,6 @@ class Representation(Displayed, Immutable):
     def commutant_type(self) -> CommutantType:
         """'R', 'C' or 'H': the algebra of real matrices that commute with an irreducible representation.
 
-        Raises
-        ------
-        InputError
-            If the representation is reducible over the reals; use `decomposition`.
-
         Notes
         -----
         By Schur's lemma and Frobenius' theorem the commutant over R is a division algebra, of dimension 1, 2 or 4.
@@ -627,12 +611,6 @@ class Representation(Displayed, Immutable):
             J with J^2 = -d for a number d > 0, commuting with all rho(x). By default the representation must be
             irreducible of type C (J is in its commutant) or H (three units of its commutant give quaternionic forms).
 
-        Raises
-        ------
-        InputError
-            If J does not commute with the representation, or its square is not a negative number; without J, if the
-            representation is reducible or of type R.
-
         Examples
         --------
         >>> import liehom as lh
@@ -658,11 +636,6 @@ class Representation(Displayed, Immutable):
 
     def invariants(self, degree: int) -> list[Expression]:
         """A basis of the homogeneous invariant polynomials of a degree, sympy expressions in x0, x1, ...
-
-        Parameters
-        ----------
-        degree : int
-            The degree, at least 1.
 
         Raises
         ------
@@ -904,12 +877,7 @@ class Representation(Displayed, Immutable):
         return analysis.submodules.generated_submodule(self._exact(), rows)
 
     def subrepresentation(self, subspace: Subspace | MatrixLike) -> Representation:
-        """The restriction to an invariant subspace, in the basis of the subspace.
-
-        Parameters
-        ----------
-        subspace : Subspace, or rows of shape (k, N)
-            Rows must be independent; they are the basis.
+        """The restriction to an invariant subspace, in the basis of the subspace or of independent rows (k, N).
 
         Raises
         ------

@@ -41,18 +41,9 @@ def weyl_dimension(system: RootSystem | str, weight: Sequence[int]) -> int:
 
 
 def dominant_character(system: RootSystem | str, weight: Sequence[int]) -> dict[Weight, int]:
-    """The multiplicities of the dominant weights of an irreducible module.
+    """The multiplicities of the dominant weights of an irreducible module, {weight: int} by decreasing height.
 
-    Parameters
-    ----------
-    system : RootSystem or str
-    weight : sequence of int
-        Dominant.
-
-    Returns
-    -------
-    dict
-        {dominant weight: multiplicity}, by decreasing height.
+    The arguments are those of `weyl_dimension`.
 
     Notes
     -----
@@ -70,18 +61,9 @@ def dominant_character(system: RootSystem | str, weight: Sequence[int]) -> dict[
 
 
 def character(system: RootSystem | str, weight: Sequence[int]) -> dict[Weight, int]:
-    """The weights of an irreducible module with their multiplicities.
+    """The multiplicities of all weights of an irreducible module, {weight: int} by decreasing height.
 
-    Parameters
-    ----------
-    system : RootSystem or str
-    weight : sequence of int
-        Dominant.
-
-    Returns
-    -------
-    dict
-        {weight: multiplicity}, by decreasing height.
+    The arguments are those of `weyl_dimension`.
 
     Examples
     --------
@@ -96,18 +78,9 @@ def character(system: RootSystem | str, weight: Sequence[int]) -> dict[Weight, i
 
 
 def decompose_character(system: RootSystem | str, character: Mapping[Sequence[int], int]) -> dict[Weight, int]:
-    """The highest weights, with multiplicities, of the irreducible modules whose characters add up to a given one.
+    """The highest weights, with multiplicities, of the irreducible modules whose characters add up to {weight: int}.
 
-    Parameters
-    ----------
-    system : RootSystem or str
-    character : mapping
-        {weight: multiplicity}, all weights.
-
-    Returns
-    -------
-    dict
-        {highest weight: multiplicity}, by decreasing height.
+    The argument has all weights; the result is by decreasing height.
 
     Notes
     -----
@@ -128,16 +101,7 @@ def tensor_product_decomposition(
 ) -> dict[Weight, int]:
     """The highest weights, with multiplicities, of the irreducible parts of the tensor product of two modules.
 
-    Parameters
-    ----------
-    system : RootSystem or str
-    left, right : sequences of int
-        The highest weights, dominant.
-
-    Returns
-    -------
-    dict
-        {highest weight: multiplicity}, by decreasing height.
+    The arguments are dominant, as in `weyl_dimension`. The result is {weight: int} by decreasing height.
 
     Notes
     -----

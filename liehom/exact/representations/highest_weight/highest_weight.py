@@ -312,12 +312,6 @@ def highest_weight_module(
         Prove the identity of the matrices again, for the generators with all basis elements (default). The matrices are
         a representation by construction, so the proof only guards against errors of the program.
 
-    Raises
-    ------
-    ShapeError, InputError
-        If the weight does not have one integer, not negative, per simple root, or if the dense matrices would take more
-        than 2 GB.
-
     Notes
     -----
     V(lambda) exists, and a vector of a weight other than lambda is zero in it if all e_j annihilate it. The

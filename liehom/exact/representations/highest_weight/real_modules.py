@@ -249,11 +249,6 @@ def real_module(form: RealForm | str, weight: Sequence[int], *, check: bool = Tr
         Its ``representation`` is a representation of ``liehom.algebra.real_form_of(form.vogan)`` by integer matrices.
         Its dimension is the dimension of the complex module if the commutant is R, else twice as large.
 
-    Raises
-    ------
-    ShapeError, InputError
-        If it is not a dominant integral weight, or if the dense matrices would take more than 2 GB.
-
     Notes
     -----
     Every irreducible real module is constructed in this way, from one highest weight if its commutant is R or H, and

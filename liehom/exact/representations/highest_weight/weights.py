@@ -126,13 +126,7 @@ def checked_weight(space: WeightSpace, weight: Sequence[int] | str, *, dominant:
 
 
 def weyl_orbit(system: RootSystem | str, weight: Sequence[int]) -> list[Weight]:
-    """The orbit of a weight under the Weyl group, by decreasing height; the dominant weight is first.
-
-    Parameters
-    ----------
-    system : RootSystem or str
-    weight : sequence of int
-        In fundamental coordinates, in Bourbaki's numbering; any integral weight.
+    """The orbit of an integral weight under the Weyl group, by decreasing height; the dominant weight is first.
 
     Notes
     -----
@@ -151,13 +145,7 @@ def weyl_orbit(system: RootSystem | str, weight: Sequence[int]) -> list[Weight]:
 
 
 def dual_weight(system: RootSystem | str, weight: Sequence[int]) -> Weight:
-    """The highest weight of the dual of the module with a given highest weight.
-
-    Parameters
-    ----------
-    system : RootSystem or str
-    weight : sequence of int
-        Dominant.
+    """The highest weight of the dual of the module with a dominant highest weight, as in `weyl_dimension`.
 
     Notes
     -----
@@ -175,12 +163,6 @@ def dual_weight(system: RootSystem | str, weight: Sequence[int]) -> Weight:
 
 def frobenius_schur_indicator(system: RootSystem | str, weight: Sequence[int]) -> int:
     """Frobenius-Schur indicator 1, -1 or 0: the module is real, quaternionic or complex for the compact form.
-
-    Parameters
-    ----------
-    system : RootSystem or str
-    weight : sequence of int
-        Dominant.
 
     Returns
     -------
