@@ -32,7 +32,7 @@ from liehom.exact.geometry.reductive import (
 from liehom.exact.representations.core.pair import Pair
 from liehom.exact.representations.invariants.intertwiners import MatrixAlgebra, invariant_forms
 from liehom.exact.scalars.exact_field import ExactField, ExactMatrix
-from liehom.exact.scalars.field import Matrix, MatrixLike
+from liehom.exact.scalars.field import Matrix, MatrixLike, Scalar
 from liehom.exact.scalars.function_field import FunctionField, RationalFunction
 from liehom.exact.scalars.rational import QQ
 
@@ -53,7 +53,7 @@ class InvariantMetrics:
         Invariant symmetric forms F_a on V, shape (d, d), in the basis of ``pair.reductive_complement()``. If the
         isotropy summands are inequivalent, there is one for each: there F_a is the reference form, elsewhere 0.
     reference : Matrix or None
-        A positive definite invariant form: minus the Killing form, divided by a rational number, if that is definite.
+        A positive definite invariant form: minus the Killing form, divided by `killing_factor`, if that is definite.
         None if no definite form was found.
 
     Examples
@@ -81,6 +81,13 @@ class InvariantMetrics:
     def dimension(self) -> int:
         """Number r of parameters, an int."""
         return len(self.basis)
+
+    @property
+    def killing_factor(self) -> Scalar | None:
+        """The number k for which minus the Killing form of g is k times `reference` on V, or None if there is none."""
+        killing, form = -self.split.killing(), self.reference
+        factor = killing.trace() / form.trace() if form is not None and form.nrows else None
+        return factor if factor is not None and form is not None and killing == form.scale(factor) else None
 
     @property
     def diagonal(self) -> bool:

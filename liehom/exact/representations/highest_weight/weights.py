@@ -203,7 +203,7 @@ def casimir_eigenvalue(system: RootSystem | str, weight: Sequence[int]) -> Fract
     >>> [str(casimir_eigenvalue("A2", weight)) for weight in ([1, 0], [1, 1])]
     ['8/3', '6']
     """
-    roots, space, top = _of_simple(system, weight)
+    roots, space, top = of_simple(system, weight)
     shifted = tuple(x + 2 for x in checked_weight(space, top))
     inverse = roots.fundamental_weights()
     in_roots = [sum((x * row[i] for x, row in zip(top, inverse, strict=True)), Fraction(0)) for i in range(space.rank)]
@@ -225,7 +225,7 @@ def dynkin_index(system: RootSystem | str, weight: Sequence[int]) -> int:
     >>> dynkin_index("A4", [1, 0, 0, 0]), dynkin_index("D5", [0, 0, 0, 0, 1]), dynkin_index("E8", [0] * 7 + [1])
     (1, 4, 60)
     """
-    roots, space, top = _of_simple(system, weight)
+    roots, space, top = of_simple(system, weight)
     checked_weight(space, top)
     rho = (1,) * space.rank
     size = Fraction(1)
@@ -249,7 +249,7 @@ def congruency_class(system: RootSystem | str, weight: Sequence[int]) -> tuple[i
     >>> congruency_class("A2", [1, 0]), congruency_class("D5", [0, 0, 0, 0, 1]), congruency_class("E8", [1] * 8)
     ((1,), (1, 1), ())
     """
-    roots, _, top = _of_simple(system, weight)
+    roots, _, top = of_simple(system, weight)
     ((name, nodes),) = roots.components()
     n, a = len(nodes), [top[i] for i in nodes]
     if name[0] == "A":
@@ -261,7 +261,7 @@ def congruency_class(system: RootSystem | str, weight: Sequence[int]) -> tuple[i
     return (sum(a[i] for i in places) % order,) if order > 1 else ()
 
 
-def _of_simple(system: RootSystem | str, weight: Sequence[int]) -> tuple[RootSystem, WeightSpace, Weight]:
+def of_simple(system: RootSystem | str, weight: Sequence[int]) -> tuple[RootSystem, WeightSpace, Weight]:
     """The root system of a simple algebra, its weight space and an integral weight, checked."""
     roots = root_system_of(system)
     if len(roots.components()) != 1:
