@@ -744,16 +744,8 @@ class SpiralFamily:
 def full_pairs(d: int) -> tuple[Pair | SpiralFamily, ...]:
     """All full pairs (g, h) with dim g/h = d for which h contains no ideal of g: one for each row, spirals as families.
 
-    Parameters
-    ----------
-    d : int
-        At least 0.
-
-    Returns
-    -------
-    tuple of Pair or SpiralFamily
-        Affine spaces first, then |1|-graded g, then compact isotropy. All others are extensions of these by an ideal
-        inside h.
+    Affine spaces come first, then |1|-graded g, then compact isotropy. All other pairs are extensions of these by an
+    ideal inside h.
 
     Notes
     -----

@@ -172,12 +172,7 @@ class InvariantMetrics:
             raise InputError("the matrix is not that of an invariant symmetric form") from None
 
     def generic(self, *, first: ScalarLike | None = None) -> InvariantMetric:
-        """The metric with the parameters x1, ..., xr themselves, as rational functions over QQ.
-
-        Parameters
-        ----------
-        first : rational number, optional
-            A number in place of x1.
+        """The metric with the parameters x1, ..., xr themselves, or a number for x1, as rational functions over QQ.
 
         Examples
         --------
@@ -215,10 +210,7 @@ class InvariantMetrics:
     def einstein(self) -> EinsteinMetrics:
         """All invariant Riemannian Einstein metrics, up to scale and the gauge group N(H)/H.
 
-        Returns
-        -------
-        EinsteinMetrics
-            Its `complete` is False if the computation did not end in its limits: it then holds at least these.
+        The result says by `complete` whether the computation ended in its limits; otherwise it holds at least these.
 
         Examples
         --------
@@ -377,16 +369,12 @@ class InvariantMetric:
         return constant if bool((self._ricci == self._matrix * constant).all()) else None
 
     def holonomy(self) -> Subalgebra:
-        """The holonomy algebra of the metric, generated at the base point by curvature, in so(V).
-
-        Returns
-        -------
-        Subalgebra
-            Of the Lie algebra so(V) of skew endomorphisms; ``lh.orbits.structure_name`` names it.
+        """The holonomy algebra of the metric, generated at the base point by curvature, a subalgebra of so(V).
 
         Notes
         -----
         It is the smallest algebra that contains the R(X, Y) and is closed under brackets with all Lambda(Z) (Nomizu).
+        `liehom.structure_name` names it.
 
         Examples
         --------
@@ -442,17 +430,9 @@ class InvariantMetric:
         return has_solution(field, -defect(split.brackets()), columns)
 
     def geodesic_vector(self, x: VectorLike) -> ObjectArray | None:
-        """An element X of g whose curve exp(tX) H is the geodesic with initial velocity x, or None if there is none.
+        """The X in g, array (n,), whose curve exp(tX) H is the geodesic with initial velocity x, or None.
 
-        Parameters
-        ----------
-        x : d exact numbers
-            Coordinates of a tangent vector.
-
-        Returns
-        -------
-        array (n,) or None
-            X = x + z with z in h and <[X, Y]_m, x> = 0 for all Y in m, coordinates in the basis of g.
+        x has d exact coordinates, and X = x + z with z in h and <[X, Y]_m, x> = 0 for all Y in m.
 
         Notes
         -----

@@ -140,12 +140,7 @@ LINES = 3
 
 
 def invariant_degree(pair: Pair) -> int | None:
-    """The degree of `relative_invariant` in any dimension of g/h; None if the condition holds for no psi, or h = g.
-
-    Parameters
-    ----------
-    pair : Pair
-        Over QQ.
+    """The degree of `relative_invariant` of a pair over QQ, in any dimension; None if the condition holds for no psi.
 
     Raises
     ------
@@ -379,12 +374,7 @@ class Polynomial(Protocol):
 
 
 def open_orbit_count(pair: Pair) -> int:
-    """The number of open orbits on g/h of the connected group with the Lie algebra rho(h) + R.
-
-    Parameters
-    ----------
-    pair : Pair
-        Over QQ.
+    """The number of open orbits on g/h of the connected group with the Lie algebra rho(h) + R, for a pair over QQ.
 
     Raises
     ------

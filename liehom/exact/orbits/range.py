@@ -307,14 +307,9 @@ def range_condition(pair: Pair, psi: VectorLike | None = None) -> RangeCondition
 
 
 def orbit_dimension(pair: Pair) -> int:
-    """The dimension of the orbits of generic points of g/h under the group of rho(h) + R.
+    """The dimension of the orbits of generic points of g/h under the group of rho(h) + R, over an exact field.
 
     It is the rank of [h, psi] + R psi in g/h for generic psi, and dim g/h if the range condition holds generically.
-
-    Parameters
-    ----------
-    pair : Pair
-        Over an exact field.
 
     Raises
     ------

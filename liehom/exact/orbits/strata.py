@@ -211,12 +211,9 @@ def hermitian_strata(k: int) -> list[Stratum]:
 
 
 def adjoint_strata(type_name: str) -> list[Stratum]:
-    """The strata of the adjoint representation of a compact semisimple algebra, largest orbits first.
+    """The strata of the adjoint representation of a compact algebra of a type such as 'B2 + G2', largest orbits first.
 
-    Parameters
-    ----------
-    type_name : str
-        'A2', 'E6', 'B2 + G2'; the algebra is ``liehom.algebra.compact_form`` of the type.
+    The algebra is ``liehom.algebra.compact_form`` of the type.
 
     Notes
     -----

@@ -259,11 +259,7 @@ def euclidean(n: int) -> LieAlgebra:
 def poincare(p: int, q: int = 1) -> LieAlgebra:
     """The Poincaré algebra iso(p, q) = so(p, q) + R^(p+q): rotations m_ij (i < j), then translations p_i.
 
-    Parameters
-    ----------
-    p, q : int
-        The signature of the quadratic form; not negative, with p + q at least 1. ``poincare(3)`` is the
-        algebra of dimension 10 of special relativity.
+    ``poincare(3)`` is the algebra of dimension 10 of special relativity.
 
     Notes
     -----
@@ -342,11 +338,6 @@ def conformal(p: int, q: int = 0) -> LieAlgebra:
     """The conformal algebra of R^(p,q), isomorphic to so(p+1, q+1).
 
     Its basis is: translations p_i, rotations m_ij, the dilation d, special conformal transformations k_i.
-
-    Parameters
-    ----------
-    p, q : int
-        The signature of the quadratic form e; not negative, with p + q at least 1.
 
     Notes
     -----
@@ -453,19 +444,9 @@ Word = tuple[int, ...]
 
 
 def free_nilpotent(generators: int, step: int) -> LieAlgebra:
-    """The free nilpotent Lie algebra over QQ with given number of generators and step.
+    """The free nilpotent Lie algebra over QQ with a number of generators; its step is the largest length of a bracket.
 
-    Parameters
-    ----------
-    generators : int, at least 1
-    step : int
-        The maximal length of a non-zero bracket, at least 1.
-
-    Returns
-    -------
-    LieAlgebra
-        Basis elements by length and then alphabetically, with their brackets as names: x1, x2, [x1,x2],
-        [x1,[x1,x2]], ...
+    Basis elements are by length and then alphabetic, with their brackets as names: x1, x2, [x1,x2], [x1,[x1,x2]], ...
 
     Notes
     -----

@@ -74,14 +74,7 @@ class AdmissibleLattice:
 
 
 def admissible_lattice(system: RootSystem | str, weight: Sequence[int]) -> AdmissibleLattice:
-    """The admissible lattice of the irreducible module with a given highest weight.
-
-    Parameters
-    ----------
-    system : RootSystem or str
-        A root system, or a type such as 'E8' or 'A2 + G2'.
-    weight : sequence of int
-        Dominant, in fundamental coordinates, in Bourbaki's numbering.
+    """The admissible lattice of the irreducible module with a dominant highest weight, as in `weyl_dimension`.
 
     Examples
     --------

@@ -392,11 +392,6 @@ class SpinorType:
 def spinor_type(p: int, q: int = 0) -> SpinorType:
     """The commutant, real dimension and number of the spin modules of so(p, q), without their matrices.
 
-    Parameters
-    ----------
-    p, q : int
-        Not negative, with p + q at least 2.
-
     Notes
     -----
     With n = p + q, by p - q modulo 8:
