@@ -256,17 +256,14 @@ class RangeCondition:
 def range_condition(pair: Pair, psi: VectorLike | None = None) -> RangeCondition:
     """Decide the range condition [h, psi] + R psi + h = g, at one psi or for generic psi.
 
+    The answer is exact over an exact field. Over floats it has the singular values that decided the rank, and it is
+    undecided if one of them is within a factor 100 of the error.
+
     Parameters
     ----------
     pair : Pair
     psi : sequence of n coefficients, optional
         An element of g. Without it the condition is decided for generic psi.
-
-    Returns
-    -------
-    RangeCondition
-        Exact over an exact field. Over floats it has the singular values that decided the rank, and it is undecided if
-        one of them is within a factor 100 of the error.
 
     Notes
     -----

@@ -137,19 +137,16 @@ class OrbitType:
 def orbit_types(rho: Representation, points: Iterable[VectorLike | MatrixLike]) -> list[OrbitType]:
     """Points sorted by their isotropy subalgebras up to inner automorphisms, largest orbits first.
 
+    Points of different types have isotropy subalgebras that are proved not to be conjugate, by an invariant. Points of
+    one type with ``conjugacy == 'proved'`` have conjugate isotropy subalgebras. If it is 'undecided', the type is
+    possibly several types, one for each of its ``groups`` at most. Over float64 the dimensions and the Killing form of
+    the isotropy are compared only, and nothing is proved.
+
     Parameters
     ----------
     rho : Representation
     points : iterable of sequences, shape (N,)
         Complex vectors and Hermitian matrices where `Representation.real_point` takes them.
-
-    Returns
-    -------
-    list of OrbitType
-        Points of different types have isotropy subalgebras that are proved not to be conjugate, by an invariant. Points
-        of one type with ``conjugacy == 'proved'`` have conjugate isotropy subalgebras. If it is 'undecided', the type
-        is possibly several types, one for each of its ``groups`` at most. Over float64 the dimensions and the Killing
-        form of the isotropy are compared only, and nothing is proved.
 
     Notes
     -----

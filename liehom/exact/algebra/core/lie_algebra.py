@@ -549,11 +549,8 @@ class LieAlgebra(Displayed, Immutable):
     def direct_sum_decomposition(self) -> list[Subalgebra]:
         """Indecomposable ideals, over the field of the algebra, whose direct sum is the algebra.
 
-        Returns
-        -------
-        list of Subalgebra
-            By dimension, then by canonical basis. Their bases together are a basis of the algebra. Empty for
-            dimension 0. An extension of the field may split them further.
+        They are ordered by dimension, then by canonical basis, and their bases together are a basis of the algebra.
+        There are none in dimension 0. An extension of the field may split them further.
 
         Notes
         -----
@@ -575,11 +572,8 @@ class LieAlgebra(Displayed, Immutable):
     def simple_ideals(self) -> list[Subalgebra]:
         """The simple ideals over the reals.
 
-        Returns
-        -------
-        list of Subalgebra
-            An ideal that is simple over the field but not over the reals gives ideals of ``g.over(K)``, K the real
-            number field that contains its coordinates: see ``ideal.algebra.field``.
+        An ideal that is simple over the field but not over the reals gives ideals of ``g.over(K)``, K the real number
+        field that contains its coordinates: see ``ideal.algebra.field``.
 
         Raises
         ------
@@ -599,11 +593,8 @@ class LieAlgebra(Displayed, Immutable):
     def centroid(self) -> tuple[ExactMatrix, ...]:
         """A basis of the centroid, the matrices phi with phi [x, y] = [phi x, y] for all x, y.
 
-        Returns
-        -------
-        tuple of ExactMatrix
-            Matrices phi, shape (n, n), acting on columns of coefficients. Proved: each is verified exactly, and the
-            equations that define the space are necessary, so that no other matrix belongs to it.
+        The matrices (n, n) act on columns of coefficients. Each is verified exactly, and the equations that define the
+        space are necessary, so that no other matrix belongs to it.
 
         Notes
         -----
@@ -710,11 +701,8 @@ class LieAlgebra(Displayed, Immutable):
     def derivations(self) -> Derivations:
         """The derivations D [x, y] = [D x, y] + [x, D y]: their matrices, and the Lie algebra that they form.
 
-        Returns
-        -------
-        Derivations
-            With a basis of matrices: ad e_i for a complement of the centre, then outer derivations. Over float64
-            the basis is numerical.
+        The matrices are a basis: ad e_i for a complement of the centre, then outer derivations. Over float64 the basis
+        is numerical.
 
         Notes
         -----
@@ -789,11 +777,8 @@ class LieAlgebra(Displayed, Immutable):
     def casimirs(self, max_degree: int) -> Casimirs:
         """Functionally independent polynomial invariants of the coadjoint action (Casimir operators) up to a degree.
 
-        Returns
-        -------
-        Casimirs
-            As many independent ones as exist up to this degree, those of low degree first. Rational and transcendental
-            invariants are not looked for: see ``.is_complete``.
+        They are as many independent ones as exist up to this degree, those of low degree first. Rational and
+        transcendental invariants are not looked for: see ``.is_complete``.
 
         Raises
         ------
@@ -983,11 +968,8 @@ class LieAlgebra(Displayed, Immutable):
     def identify(self) -> Identification:
         """The name of the algebra in the tables of small dimension, with an isomorphism from the named algebra.
 
-        Returns
-        -------
-        Identification
-            ``.name`` as in the catalogue, ``.parameters``, and ``.homomorphism``, over a larger real number field if
-            the map or the parameters need one.
+        The result has ``.name`` as in the catalogue, ``.parameters``, and ``.homomorphism``, over a larger real number
+        field if the map or the parameters need one.
 
         Raises
         ------
@@ -1014,11 +996,8 @@ class LieAlgebra(Displayed, Immutable):
     def isomorphism(self, other: LieAlgebra) -> Homomorphism | None:
         """An isomorphism onto another algebra over the reals, or None if there is none.
 
-        Returns
-        -------
-        Homomorphism or None
-            Over the field of the algebras, or over a larger real number field if the map needs one. If the result is
-            None, `differing_invariant` says why.
+        It is over the field of the algebras, or over a larger real number field if the map needs one. If the result is
+        None, `differing_invariant` says why.
 
         Raises
         ------
@@ -1077,16 +1056,13 @@ class LieAlgebra(Displayed, Immutable):
     def cartan_decomposition(self, *, extend: bool = True) -> CartanDecomposition:
         """The decomposition g = k + p of a semisimple algebra for a Cartan involution; unpacks as ``k, p``.
 
+        The involution is ``.theta``, which is proved to be one.
+
         Parameters
         ----------
         extend : bool, optional
             If no involution over the field of the algebra was found, return one over a larger real number field, the
             default. The field is ``.field`` of the result, and k and p are those of the algebra over that field.
-
-        Returns
-        -------
-        CartanDecomposition
-            With the involution as ``.theta``, which is proved to be one.
 
         Raises
         ------

@@ -238,10 +238,7 @@ class Subalgebra(Displayed, Immutable):
     def places(self) -> list[Place]:
         """The places of the centroid of a subalgebra that is simple over its field: its simple ideals over the reals.
 
-        Returns
-        -------
-        list of Place
-            The real places by increasing root, then the complex ones. The dimensions add up to `dimension`.
+        The real places come first, by increasing root, then the complex ones. The dimensions add up to `dimension`.
 
         Notes
         -----
@@ -259,12 +256,9 @@ class Subalgebra(Displayed, Immutable):
     def real_ideals(self) -> list[Subalgebra]:
         """The simple ideals over the reals of a subalgebra that is simple over its field F, over extensions of F.
 
-        Returns
-        -------
-        list of Subalgebra
-            In the order of `places`. Each is contained in the given ideal over its own real number field. For a real
-            root theta_v of the polynomial f of the centroid this is F(theta_v), for a pair of complex roots the field
-            of the coefficients of the quadratic factor of f.
+        They are in the order of `places`. Each is contained in the given ideal over its own real number field. For a
+        real root theta_v of the polynomial f of the centroid this is F(theta_v), for a pair of complex roots the field
+        of the coefficients of the quadratic factor of f.
 
         Raises
         ------

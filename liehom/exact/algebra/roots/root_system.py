@@ -68,12 +68,9 @@ def cartan_matrix(name: str) -> CartanMatrix:
 def dynkin_diagram(cartan: Sequence[Sequence[int]] | str) -> networkx.DiGraph[int]:
     """The Dynkin diagram of a Cartan matrix (r, r), or of a type, as a networkx graph.
 
-    Returns
-    -------
-    networkx.DiGraph
-        Nodes 0, ..., r - 1, and for i != j with non-zero a[i][j] an edge i -> j with the attribute
-        ``entry = -a[i][j]``. A simple edge is a pair of edges with entry 1. The entry exceeds 1 on the edge from a
-        longer root to a shorter root.
+    It has nodes 0, ..., r - 1, and for i != j with non-zero a[i][j] an edge i -> j with the attribute ``entry =
+    -a[i][j]``. A simple edge is a pair of edges with entry 1. The entry exceeds 1 on the edge from a longer root to a
+    shorter root.
 
     Examples
     --------

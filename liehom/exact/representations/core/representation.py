@@ -374,16 +374,13 @@ class Representation(Displayed, Immutable):
     def isotropy(self, point: VectorLike | MatrixLike) -> Subalgebra:
         """The isotropy subalgebra {x : rho(x) point = 0}.
 
+        If an entry of the point is a float, the answer is numerical: a subalgebra of ``algebra.over(RR)``.
+
         Parameters
         ----------
         point : array_like of shape (N,)
             Entries in the representation's field, or floats. Complex vectors and Hermitian matrices where `real_point`
             takes them.
-
-        Returns
-        -------
-        Subalgebra
-            Of `algebra`. If an entry is a float, the answer is numerical: a subalgebra of ``algebra.over(RR)``.
 
         Raises
         ------
@@ -758,14 +755,11 @@ class Representation(Displayed, Immutable):
     def weights(self) -> dict[Any, int]:
         """The weights of a representation of a reductive algebra, in any basis, with their multiplicities.
 
-        Returns
-        -------
-        dict
-            {weight: multiplicity}. For a semisimple algebra a weight is a tuple of int, in fundamental coordinates in
-            Bourbaki's numbering of ``algebra.semisimple_type()``. If the algebra has a centre, it is a `ChargedWeight`:
-            the weight of the derived algebra in this form, and the charges, exact complex numbers, one for each row of
-            ``algebra.center()``. These are the weights of the complexification, so that charges that are not real occur
-            in conjugate pairs.
+        {weight: multiplicity}. For a semisimple algebra a weight is a tuple of int, in fundamental coordinates in
+        Bourbaki's numbering of ``algebra.semisimple_type()``. If the algebra has a centre, it is a `ChargedWeight`: the
+        weight of the derived algebra in this form, and the charges, exact complex numbers, one for each row of
+        ``algebra.center()``. These are the weights of the complexification, so that charges that are not real occur in
+        conjugate pairs.
 
         Raises
         ------

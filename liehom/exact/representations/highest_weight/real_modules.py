@@ -234,6 +234,9 @@ def real_module_type(form: RealForm | str, weight: Sequence[int]) -> str:
 def real_module(form: RealForm | str, weight: Sequence[int], *, check: bool = True) -> RealModule:
     """The irreducible real module of a real form with a given highest weight.
 
+    Its ``representation`` is a representation of ``liehom.algebra.real_form_of(form.vogan)`` by integer matrices. Its
+    dimension is the dimension of the complex module if the commutant is R, else twice as large.
+
     Parameters
     ----------
     form : RealForm or str
@@ -242,12 +245,6 @@ def real_module(form: RealForm | str, weight: Sequence[int], *, check: bool = Tr
         As in `real_module_type`, numbered by ``RealForm.of_name(form).type``; see the examples.
     check : bool, optional
         Prove the identity of the matrices, for generators with all basis elements (default).
-
-    Returns
-    -------
-    RealModule
-        Its ``representation`` is a representation of ``liehom.algebra.real_form_of(form.vogan)`` by integer matrices.
-        Its dimension is the dimension of the complex module if the commutant is R, else twice as large.
 
     Notes
     -----

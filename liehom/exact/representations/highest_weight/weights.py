@@ -164,12 +164,9 @@ def dual_weight(system: RootSystem | str, weight: Sequence[int]) -> Weight:
 def frobenius_schur_indicator(system: RootSystem | str, weight: Sequence[int]) -> int:
     """Frobenius-Schur indicator 1, -1 or 0: the module is real, quaternionic or complex for the compact form.
 
-    Returns
-    -------
-    int
-        1 if the module has an invariant symmetric form (it is then the complexification of a real module of the
-        compact form), -1 if an invariant skew-symmetric form (it is then quaternionic, or pseudo-real), 0 if it is not
-        isomorphic to its dual (it is then complex).
+    It is 1 if the module has an invariant symmetric form (it is then the complexification of a real module of the
+    compact form), -1 if an invariant skew-symmetric form (it is then quaternionic, or pseudo-real), 0 if it is not
+    isomorphic to its dual (it is then complex).
 
     Notes
     -----
@@ -235,13 +232,10 @@ def dynkin_index(system: RootSystem | str, weight: Sequence[int]) -> int:
 
 
 def congruency_class(system: RootSystem | str, weight: Sequence[int]) -> tuple[int, ...]:
-    """The class of a weight modulo the root lattice, which adds in tensor products.
+    """The class of a weight modulo the root lattice, a tuple of int, which adds in tensor products.
 
-    Returns
-    -------
-    tuple of int
-        One number modulo n + 1 for A_n (the n-ality), modulo 2 for B_n, C_n and E7, modulo 3 for E6, and () for E8, F4
-        and G2. For D_n two numbers: modulo 2, 1 for spinors, and modulo 4.
+    It is one number modulo n + 1 for A_n (the n-ality), modulo 2 for B_n, C_n and E7, modulo 3 for E6, and () for E8,
+    F4 and G2. For D_n it is two numbers: modulo 2, 1 for spinors, and modulo 4.
 
     Examples
     --------
