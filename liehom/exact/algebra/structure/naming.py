@@ -504,7 +504,7 @@ def _with_simple_levi_factors(first: LieAlgebra, second: LieAlgebra) -> Iterator
 
 
 def _levi_frame(algebra: LieAlgebra) -> tuple[ExactMatrix, ExactMatrix, ExactMatrix]:
-    """Two elements of a Levi factor if its dimension is 3; the Levi factor; the radical."""
+    """Two elements of a Levi factor, none if its dimension is not 3, and then the Levi factor and the radical."""
     field, n = exact_field(algebra, "isomorphisms"), algebra.dimension
     levi, radical = (as_exact(part.basis) for part in algebra.levi_decomposition())
     if levi.nrows != 3:

@@ -164,9 +164,9 @@ def dual_weight(system: RootSystem | str, weight: Sequence[int]) -> Weight:
 def frobenius_schur_indicator(system: RootSystem | str, weight: Sequence[int]) -> int:
     """Frobenius-Schur indicator 1, -1 or 0: the module is real, quaternionic or complex for the compact form.
 
-    It is 1 if the module has an invariant symmetric form (it is then the complexification of a real module of the
-    compact form), -1 if an invariant skew-symmetric form (it is then quaternionic, or pseudo-real), 0 if it is not
-    isomorphic to its dual (it is then complex).
+    It is 1 if the module has an invariant symmetric form, and is then the complexification of a real module of the
+    compact form. It is -1 if the module has an invariant skew-symmetric form, and is then quaternionic, or pseudo-real.
+    It is 0 if the module is not isomorphic to its dual, and is then complex.
 
     Notes
     -----
