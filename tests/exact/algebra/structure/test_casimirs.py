@@ -1,6 +1,7 @@
 """Casimir operators: annihilated by all derivations, as many as known; to dimension 5 against a search by sympy."""
 
 import itertools
+from functools import cache
 
 import pytest
 import sympy
@@ -46,17 +47,18 @@ ROWS = [(*place, *values) for place, row in rows().items() if place[0] <= 5 for 
 MOST = 4  # degree of the polynomials that are compared
 
 
+@cache
+def action(g: LieAlgebra, i: int) -> list[tuple[sympy.Symbol, sympy.Expr]]:
+    """The basis elements y, by their names, with [e_i, y]."""
+    names, n = sympy.symbols(g.basis_names), g.dimension
+    images = [g.bracket([int(i == k) for k in range(n)], [int(j == k) for k in range(n)]) for j in range(n)]
+    sums = (sum(sympy.Rational(str(c)) * y for c, y in zip(image, names, strict=True)) for image in images)
+    return list(zip(names, sums, strict=True))
+
+
 def derived(g: LieAlgebra, f: sympy.Expr, i: int) -> sympy.Expr:
     """ad e_i of a polynomial in the names of the basis."""
-    names = sympy.symbols(g.basis_names)
-    n = g.dimension
-    images = [g.bracket([int(i == k) for k in range(n)], [int(j == k) for k in range(n)]) for j in range(n)]
-    return sympy.expand(
-        sum(
-            sympy.diff(f, x) * sum(sympy.Rational(str(c)) * y for c, y in zip(image, names, strict=True))
-            for x, image in zip(names, images, strict=True)
-        )
-    )
+    return sympy.expand(sum(sympy.diff(f, y) * image for y, image in action(g, i)))
 
 
 @pytest.mark.parametrize(("g", "degrees"), KNOWN, ids=[str(g.name) for g, _ in KNOWN])
