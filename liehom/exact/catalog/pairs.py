@@ -744,8 +744,6 @@ def full_pairs(d: int) -> tuple[Pair | SpiralFamily, ...]:
     Affine spaces come first, then |1|-graded g, then compact isotropy. All other pairs are extensions of these by an
     ideal inside h.
 
-    Notes
-    -----
     docs/theory/classification.md has the theorem.
 
     Examples

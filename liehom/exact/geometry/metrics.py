@@ -371,8 +371,6 @@ class InvariantMetric:
     def holonomy(self) -> Subalgebra:
         """The holonomy algebra of the metric, generated at the base point by curvature, a subalgebra of so(V).
 
-        Notes
-        -----
         It is the smallest algebra that contains the R(X, Y) and is closed under brackets with all Lambda(Z) (Nomizu).
         `liehom.structure_name` names it.
 
@@ -434,8 +432,6 @@ class InvariantMetric:
 
         x has d exact coordinates, and X = x + z with z in h and <[X, Y]_m, x> = 0 for all Y in m.
 
-        Notes
-        -----
         O. Kowalski and L. Vanhecke, Riemannian manifolds with homogeneous geodesics, Boll. Un. Mat. Ital. B 5 (1991).
 
         Examples

@@ -552,8 +552,6 @@ class LieAlgebra(Displayed, Immutable):
         They are ordered by dimension, then by canonical basis, and their bases together are a basis of the algebra.
         There are none in dimension 0. An extension of the field may split them further.
 
-        Notes
-        -----
         The summands are unique up to isomorphism, and unique as ideals if the algebra has no centre or is perfect
         (Krull, Remak, Schmidt). The summands of a semisimple algebra are its simple ideals.
 
@@ -596,8 +594,6 @@ class LieAlgebra(Displayed, Immutable):
         The matrices (n, n) act on columns of coefficients. Each is verified exactly, and the equations that define the
         space are necessary, so that no other matrix belongs to it.
 
-        Notes
-        -----
         The centroid is an associative algebra with one. It is commutative if the algebra is perfect or has no
         centre. For a simple algebra it is a field, the largest one over which the algebra is a Lie algebra.
 
@@ -704,8 +700,6 @@ class LieAlgebra(Displayed, Immutable):
         The matrices are a basis: ad e_i for a complement of the centre, then outer derivations. Over float64 the basis
         is numerical.
 
-        Notes
-        -----
         For semisimple g all derivations are inner (Whitehead); that g is semisimple is read from its Killing form.
 
         Examples

@@ -240,8 +240,6 @@ class Subalgebra(Displayed, Immutable):
 
         The real places come first, by increasing root, then the complex ones. The dimensions add up to `dimension`.
 
-        Notes
-        -----
         No field is extended, because only signatures of forms over the given field are computed.
 
         Examples

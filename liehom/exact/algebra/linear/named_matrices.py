@@ -382,8 +382,6 @@ def dirac_matrices(basis: DiracBasis = "dirac") -> list[Expression]:
 
     The basis 'weyl' is the chiral one; in 'majorana' all entries are imaginary.
 
-    Notes
-    -----
     gamma^a gamma^b + gamma^b gamma^a = 2 eta^ab. The matrices [gamma^a, gamma^b] / 4 span so(3, 1); all products of
     gamma matrices together span the Clifford algebra.
 
@@ -422,8 +420,6 @@ def spin_matrices(spin: ScalarLike) -> list[Expression]:
 
     The basis is m = j, j - 1, ..., -j.
 
-    Notes
-    -----
     [J_x, J_y] = i J_z, and J_x + i J_y maps the vector m to sqrt(j (j + 1) - m (m + 1)) times the vector m + 1.
 
     Examples

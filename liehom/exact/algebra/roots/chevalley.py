@@ -39,8 +39,6 @@ class RootBrackets(NamedTuple):
 def chevalley(type_name: str) -> LieAlgebra:
     """The split semisimple Lie algebra of a type such as 'E8' or 'A2 + G2', over QQ, in its Chevalley basis.
 
-    Notes
-    -----
     The basis h1, ..., hr, e1, ..., eN, f1, ..., fN is described at `chevalley_constants`.
 
     Examples
@@ -268,8 +266,6 @@ def bracket_numbers(type_name: str) -> IntegerArray:
 def compact_form(type_name: str) -> LieAlgebra:
     """The compact semisimple Lie algebra of a type such as 'E8' or 'A2 + G2', over QQ, with integer constants.
 
-    Notes
-    -----
     The basis is H1, ..., Hr, X1, ..., XN, Y1, ..., YN, positive roots in the order of `RootSystem.positive_roots`.
 
     Examples

@@ -575,8 +575,6 @@ class Representation(Displayed, Immutable):
     def commutant_type(self) -> CommutantType:
         """'R', 'C' or 'H': the algebra of real matrices that commute with an irreducible representation.
 
-        Notes
-        -----
         By Schur's lemma and Frobenius' theorem the commutant over R is a division algebra, of dimension 1, 2 or 4.
 
         Examples
@@ -676,8 +674,6 @@ class Representation(Displayed, Immutable):
     def is_irreducible(self) -> bool:
         """Whether no subspace of R^N except 0 and R^N is invariant, decided exactly over the reals.
 
-        Notes
-        -----
         Irreducible over QQ is weaker: a representation with commutant QQ(sqrt(2)) is reducible over the reals. The
         zero space is not irreducible.
 

@@ -45,8 +45,6 @@ def dominant_character(system: RootSystem | str, weight: Sequence[int]) -> dict[
 
     The arguments are those of `weyl_dimension`.
 
-    Notes
-    -----
     Freudenthal: ((lambda + rho)^2 - (mu + rho)^2) m(mu) = 2 sum_alpha sum_k m(mu + k alpha) (mu + k alpha, alpha),
     over the positive roots alpha and k = 1, 2, ...
 
@@ -82,8 +80,6 @@ def decompose_character(system: RootSystem | str, character: Mapping[Sequence[in
 
     The argument has all weights; the result is by decreasing height.
 
-    Notes
-    -----
     A weight of greatest height is a highest weight; its character is subtracted, and so on.
 
     Examples
@@ -103,10 +99,8 @@ def tensor_product_decomposition(
 
     The arguments are dominant, as in `weyl_dimension`. The result is {weight: int} by decreasing height.
 
-    Notes
-    -----
-    The product is the sum over the weights nu of the smaller factor of sign(w) V(w(nu + mu + rho) - rho), where mu
-    is the other highest weight and w takes nu + mu + rho to the dominant chamber; weights on a wall do not contribute.
+    The product is the sum over the weights nu of the smaller factor of sign(w) V(w(nu + mu + rho) - rho). Here mu is
+    the other highest weight, and w takes nu + mu + rho to the dominant chamber. Weights on a wall do not contribute.
 
     Examples
     --------
@@ -126,8 +120,6 @@ def tensor_product_decomposition(
 def symmetric_power_decomposition(system: RootSystem | str, weight: Sequence[int], k: int) -> dict[Weight, int]:
     """The highest weights, with multiplicities, of the irreducible parts of the k-th symmetric power of a module.
 
-    Notes
-    -----
     Newton's identity k S^k = sum_i psi^i S^(k-i), i = 1, ..., k, where the Adams operation psi^i multiplies all weights
     by i. Its product with an irreducible module is decomposed as in `tensor_product_decomposition`.
 

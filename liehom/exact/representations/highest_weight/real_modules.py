@@ -389,8 +389,6 @@ class SpinorType:
 def spinor_type(p: int, q: int = 0) -> SpinorType:
     """The commutant, real dimension and number of the spin modules of so(p, q), without their matrices.
 
-    Notes
-    -----
     With n = p + q, by p - q modulo 8:
 
     ======  ==========  ==============  =========

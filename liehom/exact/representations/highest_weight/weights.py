@@ -128,8 +128,6 @@ def checked_weight(space: WeightSpace, weight: Sequence[int] | str, *, dominant:
 def weyl_orbit(system: RootSystem | str, weight: Sequence[int]) -> list[Weight]:
     """The orbit of an integral weight under the Weyl group, by decreasing height; the dominant weight is first.
 
-    Notes
-    -----
     The reflections are s_i(mu) = mu - <mu, alpha_i^vee> alpha_i.
 
     Examples
@@ -147,8 +145,6 @@ def weyl_orbit(system: RootSystem | str, weight: Sequence[int]) -> list[Weight]:
 def dual_weight(system: RootSystem | str, weight: Sequence[int]) -> Weight:
     """The highest weight of the dual of the module with a dominant highest weight, as in `weyl_dimension`.
 
-    Notes
-    -----
     The dual weight is -w_0(lambda), w_0 the longest element of the Weyl group; the lowest weight is w_0(lambda).
 
     Examples
@@ -168,8 +164,6 @@ def frobenius_schur_indicator(system: RootSystem | str, weight: Sequence[int]) -
     compact form. It is -1 if the module has an invariant skew-symmetric form, and is then quaternionic, or pseudo-real.
     It is 0 if the module is not isomorphic to its dual, and is then complex.
 
-    Notes
-    -----
     A self-dual module has an invariant form that is symmetric for even and skew-symmetric for odd <lambda, 2 rho^vee>.
     The module of the split form is real, whatever the indicator.
 
@@ -189,8 +183,6 @@ def frobenius_schur_indicator(system: RootSystem | str, weight: Sequence[int]) -
 def casimir_eigenvalue(system: RootSystem | str, weight: Sequence[int]) -> Fraction:
     """The eigenvalue (lambda, lambda + 2 rho) of the quadratic Casimir element on an irreducible module, a Fraction.
 
-    Notes
-    -----
     The inner product is 2 on long roots, so the value on the adjoint module is twice the dual Coxeter number. Half of
     it is usual in physics, such as 4/3 for the 3 of SU(3).
 
@@ -211,8 +203,6 @@ def casimir_eigenvalue(system: RootSystem | str, weight: Sequence[int]) -> Fract
 def dynkin_index(system: RootSystem | str, weight: Sequence[int]) -> int:
     """Dynkin's index of an irreducible module of a simple algebra, an int: 1 for the smallest module of A_n and C_n.
 
-    Notes
-    -----
     dim V (lambda, lambda + 2 rho) / dim g, with the inner product 2 on long roots. The trace of rho(x) rho(y) is the
     index times that in the smallest module of A_n. The index of a sum is the sum of the indices.
 
