@@ -1,8 +1,8 @@
 """LieAlgebra: a finite-dimensional real Lie algebra given by structure constants.
 
 [e_i, e_j] = sum_k c[i, j, k] e_k.  Antisymmetry and the Jacobi identity are proved at construction. Elements are
-coefficient vectors. The class is the table of contents of the folder: each method documents its operation and imports
-the module, here or above, that implements it.
+coefficient vectors. The class is the table of contents of the folder: each method documents its operation and names
+the module, here or above, that implements it. Modules load when they are first used.
 """
 
 from __future__ import annotations
