@@ -135,3 +135,11 @@ def test_no_public_name_is_hidden_by_a_file() -> None:
         files |= {path.parent.name for path in stub.parent.glob("*/__init__.py")}
         hidden = {name for name, (module, _) in stub_names(stub).items() if name in files and module != package}
         assert not hidden, f"{package}: {hidden}"
+
+
+def test_modules_of_a_wing_are_its_attributes_and_others_are_not() -> None:
+    from liehom.exact.algebra import structure
+
+    assert structure.levi.radical(lh.so(3)).dimension == 0
+    with pytest.raises(AttributeError, match="structure' has no attribute 'levy'"):
+        structure.levy  # noqa: B018

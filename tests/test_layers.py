@@ -91,7 +91,8 @@ ORDER: dict[str, list[str]] = {
     }.items()
 }
 
-# the class files: a method may delegate, inside its body, to a wing above its class; nothing else may point upwards
+# the class files: a method may delegate to a wing above its class, by an import inside its body, or by the package of
+# the wing if this loads its modules when they are first used; nothing else may point upwards
 CLASS_FILES = (
     "liehom.exact.algebra.core.lie_algebra",
     "liehom.exact.algebra.core.subalgebra",
@@ -184,11 +185,17 @@ def imports(module: str, *, typing: bool = True, local: bool = True) -> Iterator
             yield name, line
 
 
+def loads_late(module: str) -> bool:
+    """Whether an import is of a package that loads none of its modules."""
+    package = modules()[module].name == "__init__.py"
+    return package and "lazy_modules(__name__)" in modules()[module].read_text(encoding="utf-8")
+
+
 def edges(module: str) -> Iterator[tuple[str, int]]:
-    """The imports of liehom in a module; those of a class file inside its methods or for type checkers are left out."""
+    """The imports of liehom in a module; those by which a class file delegates to a wing are left out."""
     door = module in CLASS_FILES
     for name, line in imports(module, typing=not door, local=not door):
-        if is_under(name, ("liehom",)) and name != "liehom":
+        if is_under(name, ("liehom",)) and name != "liehom" and not (door and loads_late(name)):
             yield name, line
 
 

@@ -48,6 +48,20 @@ def lazy(
     return load, listing
 
 
+def lazy_modules(package: str) -> Callable[[str], object]:
+    """The function `__getattr__` of a package whose modules load when they are first used."""
+
+    def load(name: str) -> object:
+        try:
+            return importlib.import_module(f"{package}.{name}")
+        except ModuleNotFoundError as error:
+            if error.name != f"{package}.{name}":
+                raise
+            raise AttributeError(f"module {package!r} has no attribute {name!r}") from None
+
+    return load
+
+
 def place_of(name: str) -> str:
     """Where a name that is not at the top level may be, for the end of a message; "" for the names of protocols."""
     from difflib import get_close_matches

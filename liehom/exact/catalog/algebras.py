@@ -340,12 +340,7 @@ EXAMPLES = (
 
 
 def algebra(name: str) -> LieAlgebra:
-    """The Lie algebra with a catalogue name; '+' means the direct sum.
-
-    Parameters
-    ----------
-    name : str
-        Such as 'so(3)', 'su(2,1)', 'sp(4,R)', 'f4(-20)', 'e(3)', 'heisenberg(2)', 'R^2', 'so(3)+sl(2)'.
+    """The Lie algebra with a catalogue name such as 'sp(4,R)' or 'e(3)'; '+' means the direct sum, as in 'so(3)+R'.
 
     Raises
     ------
@@ -362,13 +357,10 @@ def algebra(name: str) -> LieAlgebra:
 
 
 def representation(name: str) -> Representation:
-    """The representation with a catalogue name: the defining representation of a linear Lie algebra.
+    """The defining representation of a linear Lie algebra with a catalogue name such as 'g2' or 'sl(2,H)+sp(1)'.
 
-    Parameters
-    ----------
-    name : str
-        Such as 'so(4)', 'g2', 'spin(9,1)', 'sl(2,H)+sp(1)', 'tensor(sl(4),sl(2))', 'S2(gl(2))', or 'sym(4)', the
-        conjugation action of so(4) on Sym(4). See `liehom.exact.catalog.algebras` for all heads.
+    Others are 'tensor(sl(4),sl(2))', 'S2(gl(2))' and 'sym(4)', the conjugation of so(4) on Sym(4); see
+    `liehom.exact.catalog.algebras` for all heads.
 
     Raises
     ------

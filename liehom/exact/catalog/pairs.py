@@ -481,16 +481,13 @@ _ROTATING = ("e", "iso", "galilei", "bargmann", "schroedinger")
 def pair(name: str) -> Pair:
     """The pair with a catalogue name.
 
+    It is named by the canonical form of the given name; its repr is the call that constructs it.
+
     Parameters
     ----------
     name : str
         Such as 'so(4)/so(3)', 'SU(3)/T^2', 'sl(3)/P1', 'affine(spin(9,1)+R)', 'sym(4;3,1)', or the name of a space
         such as 'CP^3', 'Gr(2,C^5)', 'V(2,5)', 'W(1,2)'; `pair_names` lists one of each kind; other sizes are valid too.
-
-    Returns
-    -------
-    Pair
-        Named by the canonical form of the given name; its repr is the call that constructs it.
 
     Raises
     ------
@@ -744,19 +741,9 @@ class SpiralFamily:
 def full_pairs(d: int) -> tuple[Pair | SpiralFamily, ...]:
     """All full pairs (g, h) with dim g/h = d for which h contains no ideal of g: one for each row, spirals as families.
 
-    Parameters
-    ----------
-    d : int
-        At least 0.
+    Affine spaces come first, then |1|-graded g, then compact isotropy. All other pairs are extensions of these by an
+    ideal inside h.
 
-    Returns
-    -------
-    tuple of Pair or SpiralFamily
-        Affine spaces first, then |1|-graded g, then compact isotropy. All others are extensions of these by an ideal
-        inside h.
-
-    Notes
-    -----
     docs/theory/classification.md has the theorem.
 
     Examples

@@ -238,8 +238,6 @@ def classify(pair: Pair, verdict: Verdict | None = None) -> Classification:
         If the pair is not full; it carries the verdict.
     UndecidedError
         If the pair is over float64.
-    InputError
-        If `pair` is not a Pair, or the verdict is about a different pair.
     InternalError
         If the key is in no row: such a pair would be a counterexample to the theorem.
 

@@ -32,7 +32,7 @@ from liehom.exact.geometry.reductive import (
 from liehom.exact.representations.core.pair import Pair
 from liehom.exact.representations.invariants.intertwiners import MatrixAlgebra, invariant_forms
 from liehom.exact.scalars.exact_field import ExactField, ExactMatrix
-from liehom.exact.scalars.field import Matrix, MatrixLike
+from liehom.exact.scalars.field import Matrix, MatrixLike, Scalar
 from liehom.exact.scalars.function_field import FunctionField, RationalFunction
 from liehom.exact.scalars.rational import QQ
 
@@ -53,7 +53,7 @@ class InvariantMetrics:
         Invariant symmetric forms F_a on V, shape (d, d), in the basis of ``pair.reductive_complement()``. If the
         isotropy summands are inequivalent, there is one for each: there F_a is the reference form, elsewhere 0.
     reference : Matrix or None
-        A positive definite invariant form: minus the Killing form, divided by a rational number, if that is definite.
+        A positive definite invariant form: minus the Killing form, divided by `killing_factor`, if that is definite.
         None if no definite form was found.
 
     Examples
@@ -81,6 +81,13 @@ class InvariantMetrics:
     def dimension(self) -> int:
         """Number r of parameters, an int."""
         return len(self.basis)
+
+    @property
+    def killing_factor(self) -> Scalar | None:
+        """The number k for which minus the Killing form of g is k times `reference` on V, or None if there is none."""
+        killing, form = -self.split.killing(), self.reference
+        factor = killing.trace() / form.trace() if form is not None and form.nrows else None
+        return factor if factor is not None and form is not None and killing == form.scale(factor) else None
 
     @property
     def diagonal(self) -> bool:
@@ -165,12 +172,7 @@ class InvariantMetrics:
             raise InputError("the matrix is not that of an invariant symmetric form") from None
 
     def generic(self, *, first: ScalarLike | None = None) -> InvariantMetric:
-        """The metric with the parameters x1, ..., xr themselves, as rational functions over QQ.
-
-        Parameters
-        ----------
-        first : rational number, optional
-            A number in place of x1.
+        """The metric with the parameters x1, ..., xr themselves, or a number for x1, as rational functions over QQ.
 
         Examples
         --------
@@ -208,10 +210,7 @@ class InvariantMetrics:
     def einstein(self) -> EinsteinMetrics:
         """All invariant Riemannian Einstein metrics, up to scale and the gauge group N(H)/H.
 
-        Returns
-        -------
-        EinsteinMetrics
-            Its `complete` is False if the computation did not end in its limits: it then holds at least these.
+        The result says by `complete` whether the computation ended in its limits; otherwise it holds at least these.
 
         Examples
         --------
@@ -370,16 +369,10 @@ class InvariantMetric:
         return constant if bool((self._ricci == self._matrix * constant).all()) else None
 
     def holonomy(self) -> Subalgebra:
-        """The holonomy algebra of the metric, generated at the base point by curvature, in so(V).
+        """The holonomy algebra of the metric, generated at the base point by curvature, a subalgebra of so(V).
 
-        Returns
-        -------
-        Subalgebra
-            Of the Lie algebra so(V) of skew endomorphisms; ``lh.orbits.structure_name`` names it.
-
-        Notes
-        -----
         It is the smallest algebra that contains the R(X, Y) and is closed under brackets with all Lambda(Z) (Nomizu).
+        `liehom.structure_name` names it.
 
         Examples
         --------
@@ -435,20 +428,10 @@ class InvariantMetric:
         return has_solution(field, -defect(split.brackets()), columns)
 
     def geodesic_vector(self, x: VectorLike) -> ObjectArray | None:
-        """An element X of g whose curve exp(tX) H is the geodesic with initial velocity x, or None if there is none.
+        """The X in g, array (n,), whose curve exp(tX) H is the geodesic with initial velocity x, or None.
 
-        Parameters
-        ----------
-        x : d exact numbers
-            Coordinates of a tangent vector.
+        x has d exact coordinates, and X = x + z with z in h and <[X, Y]_m, x> = 0 for all Y in m.
 
-        Returns
-        -------
-        array (n,) or None
-            X = x + z with z in h and <[X, Y]_m, x> = 0 for all Y in m, coordinates in the basis of g.
-
-        Notes
-        -----
         O. Kowalski and L. Vanhecke, Riemannian manifolds with homogeneous geodesics, Boll. Un. Mat. Ital. B 5 (1991).
 
         Examples

@@ -140,12 +140,7 @@ LINES = 3
 
 
 def invariant_degree(pair: Pair) -> int | None:
-    """The degree of `relative_invariant` in any dimension of g/h; None if the condition holds for no psi, or h = g.
-
-    Parameters
-    ----------
-    pair : Pair
-        Over QQ.
+    """The degree of `relative_invariant` of a pair over QQ, in any dimension; None if the condition holds for no psi.
 
     Raises
     ------
@@ -236,11 +231,6 @@ def failure_cone(
         Invariant subspaces of g/h, except 0 and g/h.
     certificate : optional
         A verified certificate of kind 'dominance' or 'commutant'; its eigenspace W is listed with a numerical basis.
-
-    Raises
-    ------
-    InputError
-        If a form is zero or not invariant, or a subspace is zero, not proper or not invariant.
 
     Notes
     -----
@@ -384,12 +374,7 @@ class Polynomial(Protocol):
 
 
 def open_orbit_count(pair: Pair) -> int:
-    """The number of open orbits on g/h of the connected group with the Lie algebra rho(h) + R.
-
-    Parameters
-    ----------
-    pair : Pair
-        Over QQ.
+    """The number of open orbits on g/h of the connected group with the Lie algebra rho(h) + R, for a pair over QQ.
 
     Raises
     ------

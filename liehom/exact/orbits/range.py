@@ -256,17 +256,14 @@ class RangeCondition:
 def range_condition(pair: Pair, psi: VectorLike | None = None) -> RangeCondition:
     """Decide the range condition [h, psi] + R psi + h = g, at one psi or for generic psi.
 
+    The answer is exact over an exact field. Over floats it has the singular values that decided the rank, and it is
+    undecided if one of them is within a factor 100 of the error.
+
     Parameters
     ----------
     pair : Pair
     psi : sequence of n coefficients, optional
         An element of g. Without it the condition is decided for generic psi.
-
-    Returns
-    -------
-    RangeCondition
-        Exact over an exact field. Over floats it has the singular values that decided the rank, and it is undecided if
-        one of them is within a factor 100 of the error.
 
     Notes
     -----
@@ -307,14 +304,9 @@ def range_condition(pair: Pair, psi: VectorLike | None = None) -> RangeCondition
 
 
 def orbit_dimension(pair: Pair) -> int:
-    """The dimension of the orbits of generic points of g/h under the group of rho(h) + R.
+    """The dimension of the orbits of generic points of g/h under the group of rho(h) + R, over an exact field.
 
     It is the rank of [h, psi] + R psi in g/h for generic psi, and dim g/h if the range condition holds generically.
-
-    Parameters
-    ----------
-    pair : Pair
-        Over an exact field.
 
     Raises
     ------

@@ -211,15 +211,10 @@ def hermitian_strata(k: int) -> list[Stratum]:
 
 
 def adjoint_strata(type_name: str) -> list[Stratum]:
-    """The strata of the adjoint representation of a compact semisimple algebra, largest orbits first.
+    """The strata of the adjoint representation of a compact algebra of a type such as 'B2 + G2', largest orbits first.
 
-    Parameters
-    ----------
-    type_name : str
-        'A2', 'E6', 'B2 + G2'; the algebra is ``liehom.algebra.compact_form`` of the type.
+    The algebra is ``liehom.algebra.compact_form`` of the type.
 
-    Notes
-    -----
     The strata correspond to the classes of subsets of the Dynkin diagram under the Weyl group. The isotropy algebras
     are the centralizers of tori, of maximal rank. Semisimple orbits of other real forms are not classified here, since
     they need the Cartan subalgebras up to conjugation.
@@ -316,8 +311,6 @@ def rectangular_strata(p: int, q: int) -> list[Stratum]:
     multiplicities; the last entry of the label is negative where the determinant is. The coordinates are the entries,
     row by row.
 
-    Notes
-    -----
     Where the singular value s > 0 has multiplicity m_s and n is the rank, the isotropy is the sum of the so(m_s) and of
     so(p - n) + so(q - n). For p = q and n = p - 1 it is the isotropy of a matrix of rank p with one more simple value,
     so that these matrices are in that stratum.
@@ -353,8 +346,6 @@ def skew_strata(k: int) -> list[Stratum]:
     two strata with the same multiplicities; the last entry of the label is negative where the Pfaffian is. The
     coordinates are the entries (i, j) with i < j, in lexicographic order; k is at least 2.
 
-    Notes
-    -----
     This is the adjoint representation of so(k), in a basis of matrices; `adjoint_strata` labels the same strata by
     subsets of the Dynkin diagram. With the multiplicities m_s and rank 2n the isotropy is the sum of the u(m_s) and of
     so(k - 2n). For k = 2n + 2 it is the isotropy of a matrix with one more simple value, which is in the same stratum.
@@ -389,8 +380,6 @@ def binary_form_strata(n: int) -> list[Stratum]:
     The label has one entry, a form of the stratum, and 'generic' for the forms without isotropy. The coordinates are
     the coefficients of x^n, x^(n-1) y, ..., y^n.
 
-    Notes
-    -----
     An element that annihilates a form acts on its linear factors over the complex numbers. A nilpotent one leaves x^n
     only, a hyperbolic or elliptic one a power of the quadratic form that it preserves, xy or x^2 + y^2. So there are
     the strata of x^n, of (xy)^m and (x^2 + y^2)^m for n = 2m, and for n > 2 the open one.

@@ -18,17 +18,12 @@ from liehom.exact.scalars.field import MatrixLike, Scalar
 
 
 def structure_name(algebra: LieAlgebra | Subalgebra) -> str:
-    """Name of a Lie algebra by its structure: 'so(3) + R^2' if it is reductive, else such as 'so(3) ⋉ R^3'.
+    """Name of an algebra or subalgebra by its structure: 'so(3) + R^2' if it is reductive, else such as 'so(3) ⋉ R^3'.
 
     The simple ideals of a Levi factor have their canonical names (so(4) is 'so(3) + so(3)'). The centre of a reductive
     algebra or the radical follows. It is 'R^n' if abelian, else a name such as 'e(2)' or 'heisenberg(1)', else its name
     in the tables of small dimension (`LieAlgebra.identify`), else 'nilpotent(n)' or 'solvable(n)' with its dimension n.
     '0' is the zero algebra.
-
-    Parameters
-    ----------
-    algebra : LieAlgebra or Subalgebra
-        Over an exact field.
 
     Raises
     ------
@@ -142,19 +137,16 @@ class OrbitType:
 def orbit_types(rho: Representation, points: Iterable[VectorLike | MatrixLike]) -> list[OrbitType]:
     """Points sorted by their isotropy subalgebras up to inner automorphisms, largest orbits first.
 
+    Points of different types have isotropy subalgebras that are proved not to be conjugate, by an invariant. Points of
+    one type with ``conjugacy == 'proved'`` have conjugate isotropy subalgebras. If it is 'undecided', the type is
+    possibly several types, one for each of its ``groups`` at most. Over float64 the dimensions and the Killing form of
+    the isotropy are compared only, and nothing is proved.
+
     Parameters
     ----------
     rho : Representation
     points : iterable of sequences, shape (N,)
         Complex vectors and Hermitian matrices where `Representation.real_point` takes them.
-
-    Returns
-    -------
-    list of OrbitType
-        Points of different types have isotropy subalgebras that are proved not to be conjugate, by an invariant. Points
-        of one type with ``conjugacy == 'proved'`` have conjugate isotropy subalgebras. If it is 'undecided', the type
-        is possibly several types, one for each of its ``groups`` at most. Over float64 the dimensions and the Killing
-        form of the isotropy are compared only, and nothing is proved.
 
     Notes
     -----

@@ -2,6 +2,7 @@ from liehom.exact.representations.analysis.branching import (
     Branching as Branching,
     BranchingRule as BranchingRule,
     BranchingTerm as BranchingTerm,
+    module_name as module_name,
 )
 from liehom.exact.representations.analysis.decomposition import (
     Component as Component,

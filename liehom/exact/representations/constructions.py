@@ -257,14 +257,7 @@ def sym_conjugation(k: int, algebra: LieAlgebra | None = None) -> Representation
 def hermitian_conjugation(k: int, algebra: LieAlgebra | None = None) -> Representation:
     """The representation of su(k) on the Hermitian k x k matrices by H -> A H - H A.
 
-    The coordinates are those of `Representation.on_hermitian_matrices`.
-
-    Parameters
-    ----------
-    k : int
-        Size of the matrices, at least 1.
-    algebra : LieAlgebra, optional
-        A copy of su(k) in its standard basis (default: a new one named 'su(k)').
+    The coordinates are those of `Representation.on_hermitian_matrices`, the arguments as for `sym_conjugation`.
 
     Examples
     --------

@@ -71,18 +71,15 @@ def rationalize(
 ) -> Rationalization[LieAlgebra] | Rationalization[Pair] | Rationalization[Representation]:
     """An exact object near one over floats, with its axioms proved, and the largest change of an entry.
 
+    The result unpacks as ``exact, largest_change``. The subalgebra of a pair is in echelon form. A representation that
+    was completed by commutators is completed again, from fractions near the given matrices.
+
     Parameters
     ----------
     floating : LieAlgebra, Pair or Representation
         Over float64. An object over an exact field is returned as it is.
     max_denominator : int, optional
         Bound on the denominators of the fractions (default 1000).
-
-    Returns
-    -------
-    Rationalization
-        Unpacks as ``exact, largest_change``. The subalgebra of a pair is in echelon form. A representation that was
-        completed by commutators is completed again, from fractions near the given matrices.
 
     Examples
     --------

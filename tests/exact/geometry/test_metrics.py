@@ -231,6 +231,14 @@ def test_other_families_are_not_diagonal(name: str) -> None:
         metrics.signatures()
 
 
+@pytest.mark.parametrize(("pair", "factor"), [("su(3)/T^2", 12), ("so(5)/so(4)", 6), ("so(4,1)/so(4)", -6)])
+def test_the_killing_form_is_a_multiple_of_the_reference_form(pair: str, factor: int) -> None:
+    metrics = lh.pair(pair).invariant_metrics()
+    assert metrics.killing_factor == factor
+    assert -metrics.split.killing() == metrics.reference.scale(lh.QQ.convert(factor))
+    assert lh.Pair(lh.direct_sum(lh.so(3), lh.sl(2)), []).invariant_metrics().killing_factor is None
+
+
 def test_family_of_metrics_may_be_degenerate_at_some_points() -> None:
     metrics = lh.pair("so(4)/so(2)+so(2)").invariant_metrics()
     field = FunctionField(["a"])

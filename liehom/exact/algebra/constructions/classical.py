@@ -190,18 +190,15 @@ def _classical(kind: str, first: int, second: Parameter) -> LieAlgebra:
 def so_form(form: MatrixLike, *, name: str | None = None) -> LieAlgebra:
     """The orthogonal algebra {X : X^T S + S X = 0} of a symmetric form S, which may be degenerate.
 
+    It is over the field of the entries. If S is not degenerate, it has dimension n (n - 1) / 2 and the basis M_ij, i <
+    j, of the module; ``so_form(identity)`` is so(n) and a diagonal of signs gives so(p, q). If S has rank r < n, the
+    dimension is r (r - 1) / 2 + (n - r) n: all maps into the radical of S belong to it.
+
     Parameters
     ----------
     form : (n, n) array_like
         The symmetric matrix S: integers, fractions, strings such as 'sqrt(2)', sympy numbers, or floats.
     name : str, optional
-
-    Returns
-    -------
-    LieAlgebra
-        Over the field of the entries. If S is not degenerate, of dimension n (n - 1) / 2 with the basis M_ij,
-        i < j, of the module; ``so_form(identity)`` is so(n) and a diagonal of signs gives so(p, q). If S has
-        rank r < n, of dimension r (r - 1) / 2 + (n - r) n: all maps into the radical of S belong to it.
 
     Examples
     --------
@@ -225,17 +222,10 @@ def so_form(form: MatrixLike, *, name: str | None = None) -> LieAlgebra:
 def sp_form(form: MatrixLike, *, name: str | None = None) -> LieAlgebra:
     """The symplectic algebra {X : X^T J + J X = 0} of a skew-symmetric form J, which may be degenerate.
 
-    Parameters
-    ----------
-    form : (n, n) array_like
-        The skew-symmetric matrix J, with entries as for `so_form`.
-    name : str, optional
+    It is over the field of the entries. If J is not degenerate (then n is even), it has dimension n (n + 1) / 2 and the
+    basis M_ij, i <= j, of the module; if its rank is r < n, the dimension is r (r + 1) / 2 + (n - r) n.
 
-    Returns
-    -------
-    LieAlgebra
-        Over the field of the entries. If J is not degenerate (then n is even), of dimension n (n + 1) / 2 with
-        the basis M_ij, i <= j, of the module; if its rank is r < n, of dimension r (r + 1) / 2 + (n - r) n.
+    J has shape (n, n) and entries as for `so_form`.
 
     Examples
     --------

@@ -144,16 +144,8 @@ def oscillator(n: int = 1, frequencies: Sequence[ScalarLike] | None = None) -> L
 
 
 def almost_abelian(matrix: MatrixLike, *, name: str | None = None) -> LieAlgebra:
-    """The Lie algebra R + R^n with [t, x_j] = sum_i A_ij x_i, in which R^n is an abelian ideal.
+    """The Lie algebra R + R^n with [t, x_j] = sum_i A_ij x_i for a matrix A (n, n), in which R^n is an abelian ideal.
 
-    Parameters
-    ----------
-    matrix : (n, n) array_like
-        A, not empty; its entries determine the field.
-    name : str, optional
-
-    Notes
-    -----
     Two such algebras are isomorphic if and only if one matrix is conjugate to a non-zero multiple of the other. The
     algebra is abelian, nilpotent or unimodular if and only if A = 0, A is nilpotent or tr A = 0.
 
@@ -265,14 +257,8 @@ def euclidean(n: int) -> LieAlgebra:
 def poincare(p: int, q: int = 1) -> LieAlgebra:
     """The Poincaré algebra iso(p, q) = so(p, q) + R^(p+q): rotations m_ij (i < j), then translations p_i.
 
-    Parameters
-    ----------
-    p, q : int
-        The signature of the quadratic form; not negative, with p + q at least 1. ``poincare(3)`` is the
-        algebra of dimension 10 of special relativity.
+    ``poincare(3)`` is the algebra of dimension 10 of special relativity.
 
-    Notes
-    -----
     [m_ij, p_i] = e_i p_j and [m_ij, p_j] = -e_j p_i, where e_i is 1 for i <= p, else -1 (for p = 0 all are 1).
 
     Examples
@@ -319,8 +305,6 @@ def schroedinger(n: int) -> LieAlgebra:
 
     Its basis is: rotations m_ij, then h, d, c, boosts k_i, translations p_i, mass.
 
-    Notes
-    -----
     It is (so(n) + sl(2)) + heisenberg(n), a semidirect sum, with [k_i, h] = p_i, [k_i, p_i] = mass, [d, h] = -2 h,
     [d, c] = 2 c, [c, h] = d, [d, k_i] = k_i, [d, p_i] = -p_i and [c, p_i] = -k_i: the symmetries of the free
     Schrödinger equation.
@@ -349,13 +333,6 @@ def conformal(p: int, q: int = 0) -> LieAlgebra:
 
     Its basis is: translations p_i, rotations m_ij, the dilation d, special conformal transformations k_i.
 
-    Parameters
-    ----------
-    p, q : int
-        The signature of the quadratic form e; not negative, with p + q at least 1.
-
-    Notes
-    -----
     [d, p_i] = p_i, [d, k_i] = -k_i, [k_i, p_j] = m_ij + e_ij d, [m_ij, p_i] = e_ii p_j, [m_ij, p_j] = -e_jj p_i, and
     likewise with k for p. The p_i, m_ij, d span the similarities of R^(p,q).
 
@@ -401,16 +378,8 @@ def affine(n: int) -> LieAlgebra:
 
 
 def affine_of(matrices: MatricesLike, *, name: str | None = None) -> LieAlgebra:
-    """The affine algebra h + V of a linear Lie algebra h: first the matrices, then the translations of V.
+    """The affine algebra h + V of a linear Lie algebra h: first its basis of matrices (N, N), then the translations.
 
-    Parameters
-    ----------
-    matrices : sequence of (N, N) array_like
-        A basis of h, closed under commutators; at least one matrix.
-    name : str, optional
-
-    Notes
-    -----
     [x, v] = x v. Use `semidirect_sum` for a representation that is not faithful or an ideal that is not abelian.
 
     Examples
@@ -465,22 +434,10 @@ Word = tuple[int, ...]
 
 
 def free_nilpotent(generators: int, step: int) -> LieAlgebra:
-    """The free nilpotent Lie algebra over QQ with given number of generators and step.
+    """The free nilpotent Lie algebra over QQ with a number of generators; its step is the largest length of a bracket.
 
-    Parameters
-    ----------
-    generators : int, at least 1
-    step : int
-        The maximal length of a non-zero bracket, at least 1.
+    Basis elements are by length and then alphabetic, with their brackets as names: x1, x2, [x1,x2], [x1,[x1,x2]], ...
 
-    Returns
-    -------
-    LieAlgebra
-        Basis elements by length and then alphabetically, with their brackets as names: x1, x2, [x1,x2],
-        [x1,[x1,x2]], ...
-
-    Notes
-    -----
     Every nilpotent Lie algebra of this step with this number of generators is a quotient of it. For g generators
     there are (1/k) sum_{d | k} mu(d) g^(k/d) basis elements of length k (Witt).
 

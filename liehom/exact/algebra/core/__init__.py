@@ -3,3 +3,7 @@
 `LieAlgebra` and `Subalgebra` are tables of contents: their methods lead to the folders beside this one, and only they
 import upwards. The conventions are in docs/notation.md.
 """
+
+from liehom.base.lazy import lazy_modules
+
+__getattr__ = lazy_modules(__name__)

@@ -1,8 +1,8 @@
 """LieAlgebra: a finite-dimensional real Lie algebra given by structure constants.
 
 [e_i, e_j] = sum_k c[i, j, k] e_k.  Antisymmetry and the Jacobi identity are proved at construction. Elements are
-coefficient vectors. The class is the table of contents of the folder: each method documents its operation and imports
-the module, here or above, that implements it.
+coefficient vectors. The class is the table of contents of the folder: each method documents its operation and names
+the module, here or above, that implements it. Modules load when they are first used.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from liehom.base.budget import within
 from liehom.base.errors import InputError, ShapeError, displayed
 from liehom.base.objects import Displayed, Immutable
 from liehom.base.typing import ElementLike
+from liehom.exact.algebra import core, involutions, structure
 from liehom.exact.algebra.core.jacobi import killing_form, prove_jacobi
 from liehom.exact.algebra.core.structure_constants import StructureConstants
 from liehom.exact.algebra.core.tables import (
@@ -310,9 +311,7 @@ class LieAlgebra(Displayed, Immutable):
         >>> lh.heisenberg(1).subalgebra(["x1", "z"]).rows()
         [[1, 0, 0], [0, 0, 1]]
         """
-        from liehom.exact.algebra.core.subalgebra import Subalgebra
-
-        return Subalgebra(self, rows)
+        return core.subalgebra.Subalgebra(self, rows)
 
     def as_subalgebra(self, subalgebra: Subalgebra | RowsLike) -> Subalgebra:
         """A `Subalgebra` of this algebra, from its rows or unchanged; `InputError` if it belongs to another algebra.
@@ -325,11 +324,9 @@ class LieAlgebra(Displayed, Immutable):
         >>> g.as_subalgebra(h) is h, g.as_subalgebra([[0, 0, 1]]) == h
         (True, True)
         """
-        from liehom.exact.algebra.core.subalgebra import Subalgebra, require_inside
-
-        if not isinstance(subalgebra, Subalgebra):
-            return Subalgebra(self, subalgebra)
-        require_inside(self, subalgebra)
+        if not isinstance(subalgebra, core.subalgebra.Subalgebra):
+            return core.subalgebra.Subalgebra(self, subalgebra)
+        core.subalgebra.require_inside(self, subalgebra)
         return subalgebra
 
     def subalgebra_generated_by(self, rows: Subalgebra | RowsLike) -> Subalgebra:
@@ -341,9 +338,7 @@ class LieAlgebra(Displayed, Immutable):
         >>> lh.so(3).subalgebra_generated_by([[1, 0, 0], [0, 1, 0]]).dimension
         3
         """
-        from liehom.exact.algebra.core.subalgebra import generated
-
-        return generated(self, rows)
+        return core.subalgebra.generated(self, rows)
 
     def ideal_generated_by(self, rows: Subalgebra | RowsLike) -> Subalgebra:
         """The smallest ideal that contains the rows.
@@ -356,9 +351,7 @@ class LieAlgebra(Displayed, Immutable):
         >>> lh.gl(2).ideal_generated_by([[1, 0, 0, 0]]).dimension
         4
         """
-        from liehom.exact.algebra.core.subalgebra import generated
-
-        return generated(self, rows, ideal=True)
+        return core.subalgebra.generated(self, rows, ideal=True)
 
     def center(self) -> Subalgebra:
         """The centre {x : [x, g] = 0}."""
@@ -373,9 +366,7 @@ class LieAlgebra(Displayed, Immutable):
         >>> lh.so(3).centralizer([[1, 0, 0]]).dimension
         1
         """
-        from liehom.exact.algebra.core.subalgebra import centralizer
-
-        return centralizer(self, rows)
+        return core.subalgebra.centralizer(self, rows)
 
     def normalizer(self, subalgebra: Subalgebra | RowsLike) -> Subalgebra:
         """The subalgebra {x : [x, h] is in h} of a subalgebra h (a `Subalgebra` or rows).
@@ -386,9 +377,7 @@ class LieAlgebra(Displayed, Immutable):
         >>> lh.sl(2).normalizer([[0, 0, 1]]).dimension
         1
         """
-        from liehom.exact.algebra.core.subalgebra import normalizer
-
-        return normalizer(self.as_subalgebra(subalgebra))
+        return core.subalgebra.normalizer(self.as_subalgebra(subalgebra))
 
     def whole(self) -> Subspace:
         """The algebra as a subspace of itself."""
@@ -404,9 +393,8 @@ class LieAlgebra(Displayed, Immutable):
         >>> lh.gl(2).derived_subalgebra().dimension
         3
         """
-        from liehom.exact.algebra.core.subalgebra import Subalgebra, products
-
-        return Subalgebra(self, products(self, *[self.field.identity(self.dimension)] * 2), check=False)  # an ideal
+        rows = core.subalgebra.products(self, *[self.field.identity(self.dimension)] * 2)
+        return core.subalgebra.Subalgebra(self, rows, check=False)  # an ideal
 
     def derived_series(self) -> list[Subalgebra]:
         """The ideals g, [g, g], [[g, g], [g, g]], ... up to the first that repeats, which is listed once.
@@ -417,9 +405,7 @@ class LieAlgebra(Displayed, Immutable):
         >>> [h.dimension for h in lh.gl(2).derived_series()]
         [4, 3]
         """
-        from liehom.exact.algebra.core.subalgebra import descending_series
-
-        return descending_series(self)
+        return core.subalgebra.descending_series(self)
 
     def lower_central_series(self) -> list[Subalgebra]:
         """The ideals g, [g, g], [g, [g, g]], ... up to the first that repeats, which is listed once.
@@ -430,9 +416,7 @@ class LieAlgebra(Displayed, Immutable):
         >>> [h.dimension for h in lh.heisenberg(1).lower_central_series()]
         [3, 1, 0]
         """
-        from liehom.exact.algebra.core.subalgebra import descending_series
-
-        return descending_series(self, central=True)
+        return core.subalgebra.descending_series(self, central=True)
 
     def upper_central_series(self) -> list[Subalgebra]:
         """The ideals 0 = z_0, z_1, z_2, ... with z_(k+1)/z_k the centre of g/z_k, up to the first that repeats.
@@ -443,9 +427,7 @@ class LieAlgebra(Displayed, Immutable):
         >>> [h.dimension for h in lh.heisenberg(1).upper_central_series()]
         [0, 1, 3]
         """
-        from liehom.exact.algebra.core.subalgebra import upper_central_series
-
-        return upper_central_series(self)
+        return core.subalgebra.upper_central_series(self)
 
     # -- solvable, nilpotent, semisimple -----------------------------------------------------------------
     def is_abelian(self) -> bool:
@@ -519,9 +501,8 @@ class LieAlgebra(Displayed, Immutable):
         >>> lh.so(3, 1).is_simple(), lh.so(4).is_simple(), lh.abelian(1).is_simple()
         (True, False, False)
         """
-        from liehom.exact.algebra.structure.identification import simple_parts
-
-        return self.dimension > 0 and self.is_semisimple() and sum(len(part.places) for part in simple_parts(self)) == 1
+        parts = structure.identification.simple_parts(self) if self.dimension and self.is_semisimple() else []
+        return sum(len(part.places) for part in parts) == 1
 
     def radical(self) -> Subalgebra:
         """The solvable radical, the largest solvable ideal.
@@ -534,9 +515,7 @@ class LieAlgebra(Displayed, Immutable):
         >>> lh.euclidean(3).radical().dimension, lh.gl(3).radical().dimension
         (3, 1)
         """
-        from liehom.exact.algebra.structure.levi import radical
-
-        return radical(self)
+        return structure.levi.radical(self)
 
     def nilradical(self) -> Subalgebra:
         """The nilradical, the largest nilpotent ideal.
@@ -552,9 +531,7 @@ class LieAlgebra(Displayed, Immutable):
         >>> lh.euclidean(2).nilradical().dimension, lh.heisenberg(1).nilradical().dimension
         (2, 3)
         """
-        from liehom.exact.algebra.structure.levi import nilradical
-
-        return nilradical(self)
+        return structure.levi.nilradical(self)
 
     def levi_decomposition(self) -> LeviDecomposition:
         """A Levi factor and the radical; unpacks as ``levi, radical``.
@@ -566,22 +543,15 @@ class LieAlgebra(Displayed, Immutable):
         >>> levi.dimension, radical.dimension, levi.as_algebra().killing_signature()
         (3, 3, (0, 3, 0))
         """
-        from liehom.exact.algebra.structure.levi import levi_decomposition
-
-        return levi_decomposition(self)
+        return structure.levi.levi_decomposition(self)
 
     # -- direct sums of ideals ---------------------------------------------------------------------------
     def direct_sum_decomposition(self) -> list[Subalgebra]:
         """Indecomposable ideals, over the field of the algebra, whose direct sum is the algebra.
 
-        Returns
-        -------
-        list of Subalgebra
-            By dimension, then by canonical basis. Their bases together are a basis of the algebra. Empty for
-            dimension 0. An extension of the field may split them further.
+        They are ordered by dimension, then by canonical basis, and their bases together are a basis of the algebra.
+        There are none in dimension 0. An extension of the field may split them further.
 
-        Notes
-        -----
         The summands are unique up to isomorphism, and unique as ideals if the algebra has no centre or is perfect
         (Krull, Remak, Schmidt). The summands of a semisimple algebra are its simple ideals.
 
@@ -595,18 +565,13 @@ class LieAlgebra(Displayed, Immutable):
         >>> [h.dimension for h in lh.direct_sum(lh.gl(2), lh.heisenberg(1)).direct_sum_decomposition()]
         [1, 3, 3]
         """
-        from liehom.exact.algebra.structure.ideals import direct_sum_decomposition
-
-        return direct_sum_decomposition(self)
+        return structure.ideals.direct_sum_decomposition(self)
 
     def simple_ideals(self) -> list[Subalgebra]:
         """The simple ideals over the reals.
 
-        Returns
-        -------
-        list of Subalgebra
-            An ideal that is simple over the field but not over the reals gives ideals of ``g.over(K)``, K the real
-            number field that contains its coordinates: see ``ideal.algebra.field``.
+        An ideal that is simple over the field but not over the reals gives ideals of ``g.over(K)``, K the real number
+        field that contains its coordinates: see ``ideal.algebra.field``.
 
         Raises
         ------
@@ -621,21 +586,14 @@ class LieAlgebra(Displayed, Immutable):
         >>> [h.dimension for h in lh.direct_sum(lh.gl(2), lh.so(3, 1)).simple_ideals()]
         [3, 6]
         """
-        from liehom.exact.algebra.structure.ideals import simple_ideals
-
-        return simple_ideals(self)
+        return structure.ideals.simple_ideals(self)
 
     def centroid(self) -> tuple[ExactMatrix, ...]:
         """A basis of the centroid, the matrices phi with phi [x, y] = [phi x, y] for all x, y.
 
-        Returns
-        -------
-        tuple of ExactMatrix
-            Matrices phi, shape (n, n), acting on columns of coefficients. Proved: each is verified exactly, and the
-            equations that define the space are necessary, so that no other matrix belongs to it.
+        The matrices (n, n) act on columns of coefficients. Each is verified exactly, and the equations that define the
+        space are necessary, so that no other matrix belongs to it.
 
-        Notes
-        -----
         The centroid is an associative algebra with one. It is commutative if the algebra is perfect or has no
         centre. For a simple algebra it is a field, the largest one over which the algebra is a Lie algebra.
 
@@ -649,24 +607,11 @@ class LieAlgebra(Displayed, Immutable):
         [0, 1, 0]
         [0, 0, 1]
         """
-        from liehom.exact.algebra.structure.centroid import centroid
-
-        return centroid(self)
+        return structure.centroid.centroid(self)
 
     # -- algebras made of this one -----------------------------------------------------------------------
     def quotient(self, ideal: Subalgebra | RowsLike, *, name: str | None = None) -> LieAlgebra:
-        """The quotient g/h by an ideal h.
-
-        Parameters
-        ----------
-        ideal : Subalgebra of g, or rows (k, n)
-            A basis of h.
-        name : str, optional
-
-        Returns
-        -------
-        LieAlgebra
-            In the basis to which `quotient_map` maps a complement of h.
+        """The quotient g/h by an ideal h, in the basis to which `quotient_map` maps a complement of h.
 
         Raises
         ------
@@ -691,11 +636,9 @@ class LieAlgebra(Displayed, Immutable):
         >>> lh.gl(2).quotient_map([[1, 0, 0, 1]]).kernel().rows()
         [[1, 0, 0, 1]]
         """
-        from liehom.exact.algebra.core.homomorphism import Homomorphism
-
         h = self.as_subalgebra(ideal)
         # The bracket of the quotient is the one that makes this a homomorphism.
-        return Homomorphism(self, h.quotient_algebra(), h.quotient().projection.T, check=False)
+        return core.homomorphism.Homomorphism(self, h.quotient_algebra(), h.quotient().projection.T, check=False)
 
     def complexification(self, *, name: str | None = None) -> ComplexLieAlgebra:
         """The complexification g (x) C as a real Lie algebra of dimension 2n, with its complex structure.
@@ -754,14 +697,9 @@ class LieAlgebra(Displayed, Immutable):
     def derivations(self) -> Derivations:
         """The derivations D [x, y] = [D x, y] + [x, D y]: their matrices, and the Lie algebra that they form.
 
-        Returns
-        -------
-        Derivations
-            With a basis of matrices: ad e_i for a complement of the centre, then outer derivations. Over float64
-            the basis is numerical.
+        The matrices are a basis: ad e_i for a complement of the centre, then outer derivations. Over float64 the basis
+        is numerical.
 
-        Notes
-        -----
         For semisimple g all derivations are inner (Whitehead); that g is semisimple is read from its Killing form.
 
         Examples
@@ -771,9 +709,7 @@ class LieAlgebra(Displayed, Immutable):
         (<derivations of so(4): dimension 6, 0 outer>, <derivations of heisenberg(1): dimension 6, 4 outer>,
          <derivations of R^2: dimension 4, 4 outer>)
         """
-        from liehom.exact.algebra.structure.derivations import derivations
-
-        return derivations(self)
+        return structure.derivations.derivations(self)
 
     def cohomology(
         self, degree: int, matrices: Sequence[MatrixLike] | None = None, *, size: int | None = None
@@ -810,9 +746,7 @@ class LieAlgebra(Displayed, Immutable):
         >>> [lh.heisenberg(1).cohomology(k).dimension for k in range(4)]
         [1, 2, 2, 1]
         """
-        from liehom.exact.algebra.structure.cohomology import cohomology
-
-        return cohomology(self, degree, matrices, size=size)
+        return structure.cohomology.cohomology(self, degree, matrices, size=size)
 
     # -- invariants of the coadjoint action --------------------------------------------------------------
     def index(self) -> int:
@@ -832,23 +766,13 @@ class LieAlgebra(Displayed, Immutable):
         >>> lh.sl(3).index(), lh.heisenberg(2).index(), lh.euclidean(2).index(), lh.algebra.affine(1).index()
         (2, 1, 1, 0)
         """
-        from liehom.exact.algebra.structure.casimirs import index
-
-        return index(self)
+        return structure.casimirs.index(self)
 
     def casimirs(self, max_degree: int) -> Casimirs:
-        """Functionally independent polynomial invariants of the coadjoint action (generalized Casimir operators).
+        """Functionally independent polynomial invariants of the coadjoint action (Casimir operators) up to a degree.
 
-        Parameters
-        ----------
-        max_degree : int
-            The largest degree of a polynomial.
-
-        Returns
-        -------
-        Casimirs
-            As many independent ones as exist up to this degree, those of low degree first. Rational and transcendental
-            invariants are not looked for: see ``.is_complete``.
+        They are as many independent ones as exist up to this degree, those of low degree first. Rational and
+        transcendental invariants are not looked for: see ``.is_complete``.
 
         Raises
         ------
@@ -863,9 +787,7 @@ class LieAlgebra(Displayed, Immutable):
         >>> lh.LieAlgebra({("x", "y"): {"y": 1}, ("x", "z"): {"z": 2}}).casimirs(4).is_complete
         False
         """
-        from liehom.exact.algebra.structure.casimirs import casimirs
-
-        return casimirs(self, max_degree)
+        return structure.casimirs.casimirs(self, max_degree)
 
     # -- Jordan decomposition and nilpotent elements -----------------------------------------------------
     def jordan_decomposition(self, x: ElementLike) -> tuple[npt.NDArray[Any], npt.NDArray[Any]]:
@@ -882,9 +804,7 @@ class LieAlgebra(Displayed, Immutable):
         >>> [g.show(y) for y in g.jordan_decomposition([3, 1, 0, 3])]
         ['3*e0 + 3*e3', 'e1']
         """
-        from liehom.exact.algebra.structure.nilpotent import jordan_decomposition
-
-        s, n = jordan_decomposition(self, x)
+        s, n = structure.nilpotent.jordan_decomposition(self, x)
         return self._vector(s.row(0)), self._vector(n.row(0))
 
     def sl2_triple(self, e: ElementLike) -> tuple[npt.NDArray[Any], npt.NDArray[Any], npt.NDArray[Any]]:
@@ -900,9 +820,7 @@ class LieAlgebra(Displayed, Immutable):
         >>> [g.show(y) for y in g.sl2_triple({"e1": 1, "e2": 1})]
         ['2*h1 + 2*h2', 'e1 + e2', '2*f1 + 2*f2']
         """
-        from liehom.exact.algebra.structure.nilpotent import sl2_triple
-
-        triple = sl2_triple(self, e)
+        triple = structure.nilpotent.sl2_triple(self, e)
         return self._vector(triple.h.row(0)), self._vector(triple.e.row(0)), self._vector(triple.f.row(0))
 
     def nilpotent_orbits(self) -> list[NilpotentOrbit]:
@@ -916,12 +834,10 @@ class LieAlgebra(Displayed, Immutable):
         >>> [(orbit.rows, orbit.dimension) for orbit in lh.su(2, 1).nilpotent_orbits()]
         [(('+', '+', '-'), 0), (('+-', '+'), 4), (('-+', '+'), 4), (('+-+',), 6)]
         """
-        from liehom.exact.algebra.structure.nilpotent import nilpotent_orbits
-
         forms = self.real_forms()
         if len(forms) > 1 or sum(form.dimension for form in forms) != self.dimension:
             raise InputError(f"nilpotent orbits are listed for simple algebras, and {self!r} is not simple")
-        return nilpotent_orbits(forms[0].name if forms else "0")
+        return structure.nilpotent.nilpotent_orbits(forms[0].name if forms else "0")
 
     # -- Cartan subalgebras and roots --------------------------------------------------------------------
     def cartan_subalgebra(self) -> Subalgebra:
@@ -933,9 +849,7 @@ class LieAlgebra(Displayed, Immutable):
         >>> lh.sl(3).cartan_subalgebra().dimension, lh.heisenberg(1).cartan_subalgebra().dimension
         (2, 3)
         """
-        from liehom.exact.algebra.structure.root_spaces import cartan_subalgebra
-
-        return cartan_subalgebra(self)
+        return structure.root_spaces.cartan_subalgebra(self)
 
     def rank(self) -> int:
         """The rank: the dimension of the Cartan subalgebras.
@@ -951,15 +865,8 @@ class LieAlgebra(Displayed, Immutable):
     def root_space_decomposition(self, cartan: Subalgebra | None = None) -> RootSpaceDecomposition:
         """The root space decomposition of a semisimple algebra: h and the V_alpha with [h, v] = alpha(h) v.
 
-        Parameters
-        ----------
-        cartan : Subalgebra, optional
-            A Cartan subalgebra h; by default `cartan_subalgebra`.
-
-        Returns
-        -------
-        RootSpaceDecomposition
-            Root spaces of roots that are conjugate over the field are not separated: their sum is one entry.
+        h is by default `cartan_subalgebra`. Root spaces of roots that are conjugate over the field are not separated:
+        their sum is one entry.
 
         Examples
         --------
@@ -970,9 +877,7 @@ class LieAlgebra(Displayed, Immutable):
         >>> [space.space.dimension for space in lh.so(3).root_space_decomposition().spaces]
         [2]
         """
-        from liehom.exact.algebra.structure.root_spaces import root_space_decomposition
-
-        return root_space_decomposition(self, cartan)
+        return structure.root_spaces.root_space_decomposition(self, cartan)
 
     def root_system(self) -> RootSystem:
         """The root system of the complexification of a semisimple algebra.
@@ -983,9 +888,7 @@ class LieAlgebra(Displayed, Immutable):
         >>> lh.so(3).root_system().type, lh.so(4).root_system().weyl_group_order()
         ('A1', 4)
         """
-        from liehom.exact.algebra.structure.root_spaces import root_data
-
-        return root_data(self).root_system
+        return structure.root_spaces.root_data(self).root_system
 
     def restricted_roots(self) -> list[tuple[str, str, dict[str, int]]]:
         """For each simple ideal over the reals: its name, the type of the restricted roots, and their multiplicities.
@@ -1010,9 +913,7 @@ class LieAlgebra(Displayed, Immutable):
         >>> lh.so(3, 1).semisimple_type(), lh.gl(3).semisimple_type(), lh.abelian(2).semisimple_type()
         ('A1 + A1', 'A2', '0')
         """
-        from liehom.exact.algebra.structure.identification import semisimple_type
-
-        return semisimple_type(self)
+        return structure.identification.semisimple_type(self)
 
     def real_form(self) -> str:
         """The name, over the reals, of the algebra or of a Levi factor, such as 'so(4,1)' or 'so(3) + sl(2,R)'.
@@ -1032,9 +933,7 @@ class LieAlgebra(Displayed, Immutable):
         >>> lh.so(1, 4).real_form(), lh.su(2).real_form(), lh.so(2, 2).real_form(), lh.so(3, 1).real_form()
         ('so(4,1)', 'so(3)', 'sl(2,R) + sl(2,R)', 'sl(2,C)')
         """
-        from liehom.exact.algebra.structure.identification import real_form
-
-        return real_form(self)
+        return structure.identification.real_form(self)
 
     def real_forms(self) -> list[RealForm]:
         """The real forms of the simple ideals over the reals of the algebra or of a Levi factor.
@@ -1047,9 +946,7 @@ class LieAlgebra(Displayed, Immutable):
         >>> [form.satake.black for form in lh.so(4, 1).real_forms()]
         [(1,)]
         """
-        from liehom.exact.algebra.structure.identification import real_forms_of
-
-        return real_forms_of(self)
+        return structure.identification.real_forms_of(self)
 
     def real_rank(self) -> int:
         """The real rank of the algebra or of a Levi factor: the dimension of a maximal split abelian subspace of p.
@@ -1065,11 +962,8 @@ class LieAlgebra(Displayed, Immutable):
     def identify(self) -> Identification:
         """The name of the algebra in the tables of small dimension, with an isomorphism from the named algebra.
 
-        Returns
-        -------
-        Identification
-            ``.name`` as in the catalogue, ``.parameters``, and ``.homomorphism``, over a larger real number field if
-            the map or the parameters need one.
+        The result has ``.name`` as in the catalogue, ``.parameters``, and ``.homomorphism``, over a larger real number
+        field if the map or the parameters need one.
 
         Raises
         ------
@@ -1091,18 +985,13 @@ class LieAlgebra(Displayed, Immutable):
         >>> found.name, found.homomorphism.source.field
         ('A3,5(7 - 4*sqrt(3))', QQ(sqrt(3)))
         """
-        from liehom.exact.algebra.structure.naming import identify
-
-        return identify(self)
+        return structure.naming.identify(self)
 
     def isomorphism(self, other: LieAlgebra) -> Homomorphism | None:
         """An isomorphism onto another algebra over the reals, or None if there is none.
 
-        Returns
-        -------
-        Homomorphism or None
-            Over the field of the algebras, or over a larger real number field if the map needs one. If the result is
-            None, `differing_invariant` says why.
+        It is over the field of the algebras, or over a larger real number field if the map needs one. If the result is
+        None, `differing_invariant` says why.
 
         Raises
         ------
@@ -1117,9 +1006,7 @@ class LieAlgebra(Displayed, Immutable):
         >>> lh.heisenberg(1).isomorphism(lh.euclidean(2)) is None
         True
         """
-        from liehom.exact.algebra.structure.naming import isomorphism
-
-        return isomorphism(self, other)
+        return structure.naming.isomorphism(self, other)
 
     def differing_invariant(self, other: LieAlgebra) -> str | None:
         """An invariant that proves that two algebras are not isomorphic over the reals, as a string, or None.
@@ -1132,9 +1019,7 @@ class LieAlgebra(Displayed, Immutable):
         >>> lh.bianchi("VI", 2).differing_invariant(lh.bianchi("VI", 3))
         'name: A3,5(1/3) and A3,5(1/2)'
         """
-        from liehom.exact.algebra.structure.naming import differing_invariant
-
-        return differing_invariant(self, other)
+        return structure.naming.differing_invariant(self, other)
 
     def is_isomorphic(self, other: LieAlgebra) -> bool:
         """Whether two algebras are isomorphic over the reals.
@@ -1159,24 +1044,19 @@ class LieAlgebra(Displayed, Immutable):
         >>> lh.heisenberg(1).is_isomorphic(lh.bianchi("II"))
         True
         """
-        from liehom.exact.algebra.structure.naming import is_isomorphic
-
-        return is_isomorphic(self, other)
+        return structure.naming.is_isomorphic(self, other)
 
     # -- Cartan decomposition ----------------------------------------------------------------------------
     def cartan_decomposition(self, *, extend: bool = True) -> CartanDecomposition:
         """The decomposition g = k + p of a semisimple algebra for a Cartan involution; unpacks as ``k, p``.
+
+        The involution is ``.theta``, which is proved to be one.
 
         Parameters
         ----------
         extend : bool, optional
             If no involution over the field of the algebra was found, return one over a larger real number field, the
             default. The field is ``.field`` of the result, and k and p are those of the algebra over that field.
-
-        Returns
-        -------
-        CartanDecomposition
-            With the involution as ``.theta``, which is proved to be one.
 
         Raises
         ------
@@ -1210,9 +1090,7 @@ class LieAlgebra(Displayed, Immutable):
         >>> cartan.field, cartan.k.dimension
         (QQ(sqrt(2)), 4)
         """
-        from liehom.exact.algebra.involutions.cartan_decomposition import cartan_decomposition
-
-        return cartan_decomposition(self, extend=extend)
+        return involutions.cartan_decomposition.cartan_decomposition(self, extend=extend)
 
     def cartan_involution(self) -> Matrix:
         """The matrix (n, n), on columns, of the Cartan involution of `cartan_decomposition`, with entries in its field.
@@ -1309,9 +1187,7 @@ class LieAlgebra(Displayed, Immutable):
           derived series 3 > 2 > 0, lower central series 3 > 2
           Killing form of signature (0, 1, 2) (positive, negative, zero)
         """
-        from liehom.exact.algebra.structure.identification import describe
-
-        return describe(self)
+        return structure.identification.describe(self)
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, LieAlgebra) and self._constants == other._constants

@@ -23,6 +23,7 @@ from liehom.base.errors import (
 )
 from liehom.base.objects import Displayed, Immutable
 from liehom.base.typing import VectorLike
+from liehom.exact.algebra import structure
 from liehom.exact.algebra.core.lie_algebra import LieAlgebra
 from liehom.exact.algebra.core.tables import RowsLike, coefficients
 from liehom.exact.scalars.exact_field import ExactMatrix
@@ -237,13 +238,8 @@ class Subalgebra(Displayed, Immutable):
     def places(self) -> list[Place]:
         """The places of the centroid of a subalgebra that is simple over its field: its simple ideals over the reals.
 
-        Returns
-        -------
-        list of Place
-            The real places by increasing root, then the complex ones. The dimensions add up to `dimension`.
+        The real places come first, by increasing root, then the complex ones. The dimensions add up to `dimension`.
 
-        Notes
-        -----
         No field is extended, because only signatures of forms over the given field are computed.
 
         Examples
@@ -253,19 +249,14 @@ class Subalgebra(Displayed, Immutable):
         >>> [(p.kind, p.killing_signature) for p in ideal.places()]
         [('complex', (3, 3))]
         """
-        from liehom.exact.algebra.structure.ideals import places
-
-        return places(self)
+        return structure.ideals.places(self)
 
     def real_ideals(self) -> list[Subalgebra]:
         """The simple ideals over the reals of a subalgebra that is simple over its field F, over extensions of F.
 
-        Returns
-        -------
-        list of Subalgebra
-            In the order of `places`. Each is contained in the given ideal over its own real number field. For a real
-            root theta_v of the polynomial f of the centroid this is F(theta_v), for a pair of complex roots the field
-            of the coefficients of the quadratic factor of f.
+        They are in the order of `places`. Each is contained in the given ideal over its own real number field. For a
+        real root theta_v of the polynomial f of the centroid this is F(theta_v), for a pair of complex roots the field
+        of the coefficients of the quadratic factor of f.
 
         Raises
         ------
@@ -279,9 +270,7 @@ class Subalgebra(Displayed, Immutable):
         >>> ideal.real_ideals()
         [<subalgebra of dimension 6 in so(3,1) over QQ>]
         """
-        from liehom.exact.algebra.structure.ideals import real_ideals
-
-        return real_ideals(self)
+        return structure.ideals.real_ideals(self)
 
     # -- printing ----------------------------------------------------------------------------------------
     def __repr__(self) -> str:

@@ -2,3 +2,7 @@
 
 Floating point proposes an involution and exact arithmetic proves it; see docs/theory/structure.md.
 """
+
+from liehom.base.lazy import lazy_modules
+
+__getattr__ = lazy_modules(__name__)

@@ -380,13 +380,8 @@ def gell_mann_matrices(n: int = 3, *, normalized: bool = True) -> list[Expressio
 def dirac_matrices(basis: DiracBasis = "dirac") -> list[Expression]:
     """The Dirac matrices gamma^0, ..., gamma^3, sympy matrices (4, 4), with the metric (1, -1, -1, -1).
 
-    Parameters
-    ----------
-    basis : {'dirac', 'weyl', 'majorana'}
-        'weyl' is the chiral basis; in 'majorana' all entries are imaginary.
+    The basis 'weyl' is the chiral one; in 'majorana' all entries are imaginary.
 
-    Notes
-    -----
     gamma^a gamma^b + gamma^b gamma^a = 2 eta^ab. The matrices [gamma^a, gamma^b] / 4 span so(3, 1); all products of
     gamma matrices together span the Clifford algebra.
 
@@ -421,15 +416,10 @@ def dirac_matrices(basis: DiracBasis = "dirac") -> list[Expression]:
 
 
 def spin_matrices(spin: ScalarLike) -> list[Expression]:
-    """The angular momentum matrices J_x, J_y, J_z of spin j, sympy matrices (2j + 1, 2j + 1).
+    """The angular momentum matrices J_x, J_y, J_z of spin j, such as 1 or "3/2", sympy matrices (2j + 1, 2j + 1).
 
-    Parameters
-    ----------
-    spin : int, str, Fraction or sympy number
-        j, an integer or half-integer at least 0: 1, "1/2", "3/2". The basis is m = j, j - 1, ..., -j.
+    The basis is m = j, j - 1, ..., -j.
 
-    Notes
-    -----
     [J_x, J_y] = i J_z, and J_x + i J_y maps the vector m to sqrt(j (j + 1) - m (m + 1)) times the vector m + 1.
 
     Examples

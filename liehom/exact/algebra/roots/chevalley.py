@@ -37,15 +37,8 @@ class RootBrackets(NamedTuple):
 
 
 def chevalley(type_name: str) -> LieAlgebra:
-    """The split semisimple Lie algebra of a type, over QQ, in its Chevalley basis.
+    """The split semisimple Lie algebra of a type such as 'E8' or 'A2 + G2', over QQ, in its Chevalley basis.
 
-    Parameters
-    ----------
-    type_name : str
-        'A1', ..., 'E8', or a sum such as 'A2 + G2'.
-
-    Notes
-    -----
     The basis h1, ..., hr, e1, ..., eN, f1, ..., fN is described at `chevalley_constants`.
 
     Examples
@@ -271,15 +264,8 @@ def bracket_numbers(type_name: str) -> IntegerArray:
 
 
 def compact_form(type_name: str) -> LieAlgebra:
-    """The compact semisimple Lie algebra of a type, over QQ, with integer structure constants.
+    """The compact semisimple Lie algebra of a type such as 'E8' or 'A2 + G2', over QQ, with integer constants.
 
-    Parameters
-    ----------
-    type_name : str
-        'A1', ..., 'E8', or a sum such as 'A2 + G2'.
-
-    Notes
-    -----
     The basis is H1, ..., Hr, X1, ..., XN, Y1, ..., YN, positive roots in the order of `RootSystem.positive_roots`.
 
     Examples

@@ -313,12 +313,7 @@ class RealForm(Displayed):
 
 
 def real_forms(type_name: str) -> list[RealForm]:
-    """All real forms of a simple complex type, by decreasing character, from the split to the compact form.
-
-    Parameters
-    ----------
-    type_name : str
-        'A3', 'B2', 'E7', ...
+    """All real forms of a simple complex type such as 'B2', by decreasing character, from the split to the compact one.
 
     Examples
     --------

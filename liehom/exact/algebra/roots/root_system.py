@@ -43,17 +43,7 @@ def parse_type(name: str) -> tuple[tuple[str, int], ...]:
 
 
 def cartan_matrix(name: str) -> CartanMatrix:
-    """The Cartan matrix of a type in Bourbaki's order; block diagonal for a sum.
-
-    Parameters
-    ----------
-    name : str
-        'A1', 'B2', ..., 'E8', or a sum such as 'A2 + G2'; '0' for rank 0.
-
-    Returns
-    -------
-    tuple of tuples of int, shape (rank, rank)
-        ``a[i][j] = <alpha_i, alpha_j^vee>``.
+    """The Cartan matrix ``a[i][j] = <alpha_i, alpha_j^vee>``, tuples of int, of a type such as 'A2 + G2' (Bourbaki).
 
     Examples
     --------
@@ -76,19 +66,11 @@ def cartan_matrix(name: str) -> CartanMatrix:
 
 
 def dynkin_diagram(cartan: Sequence[Sequence[int]] | str) -> networkx.DiGraph[int]:
-    """The Dynkin diagram as a networkx graph.
+    """The Dynkin diagram of a Cartan matrix (r, r), or of a type, as a networkx graph.
 
-    Parameters
-    ----------
-    cartan : (r, r) integers, or str
-        A Cartan matrix, or the name of a type as for `cartan_matrix`.
-
-    Returns
-    -------
-    networkx.DiGraph
-        Nodes 0, ..., r - 1, and for i != j with non-zero a[i][j] an edge i -> j with the attribute
-        ``entry = -a[i][j]``. A simple edge is a pair of edges with entry 1. The entry exceeds 1 on the edge from a
-        longer root to a shorter root.
+    It has nodes 0, ..., r - 1, and for i != j with non-zero a[i][j] an edge i -> j with the attribute ``entry =
+    -a[i][j]``. A simple edge is a pair of edges with entry 1. The entry exceeds 1 on the edge from a longer root to a
+    shorter root.
 
     Examples
     --------
@@ -403,12 +385,7 @@ class RootSystem(Displayed):
         return _inverse(self.cartan)
 
     def dominant(self, weight: Sequence[int]) -> tuple[int, ...]:
-        """The dominant weight in the Weyl orbit of a weight.
-
-        Parameters
-        ----------
-        weight : (r,) integers
-            The coefficients <weight, alpha_i^vee> in the fundamental weights; the result has the same form.
+        """The dominant weight in the Weyl orbit of a weight, both by their coefficients in the fundamental weights.
 
         Examples
         --------
@@ -432,12 +409,7 @@ class RootSystem(Displayed):
 
 
 def root_system(name: str) -> RootSystem:
-    """The root system of a type, with simple roots in Bourbaki's order.
-
-    Parameters
-    ----------
-    name : str
-        'A1', 'B2', ..., 'E8', or a sum such as 'A2 + G2'.
+    """The root system of a type such as 'E8' or 'A2 + G2', with simple roots in Bourbaki's order.
 
     Examples
     --------

@@ -69,30 +69,12 @@ class Identification:
     homomorphism: Homomorphism
 
 
-@final
-@dataclass(frozen=True, slots=True)
-class _Constructed:
-    """A named algebra of dimension 6 that is a semidirect sum with so(3) or sl(2), in place of a row."""
-
-    build: Callable[[], LieAlgebra]
-    number: int
-    dimension: int = 6
-
-    def name(self, values: Sequence[Scalar], field: ExactField) -> str:
-        """The name in the catalogue."""
-        return self.build().name or ""
-
-    def algebra(self, values: Sequence[Scalar], field: ExactField) -> LieAlgebra:
-        """The algebra over a field."""
-        return self.build().over(field)
-
-
-_WITH_LEVI_FACTOR = [
-    _Constructed(build, number)
-    for number, build in enumerate(
-        (lambda: euclidean(3), lambda: poincare(2), lambda: schroedinger(1), lambda: affine(2))
-    )
-]
+_WITH_LEVI_FACTOR: tuple[Callable[[], LieAlgebra], ...] = (
+    lambda: euclidean(3),
+    lambda: poincare(2),
+    lambda: schroedinger(1),
+    lambda: affine(2),
+)
 """The algebras of dimension 6 that are neither solvable nor semisimple nor sums.
 
 Turkowski, Low-dimensional real Lie algebras, J. Math. Phys. 29 (1988) 2139.
@@ -102,12 +84,18 @@ Turkowski, Low-dimensional real Lie algebras, J. Math. Phys. 29 (1988) 2139.
 @final
 @dataclass(frozen=True, slots=True)
 class _Part:
-    """An indecomposable ideal with a row of the table, its parameters, and the images of e1, ..., en as rows."""
+    """An indecomposable ideal: its named algebra with number and parameters, and the images of e1, ..., en as rows."""
 
-    row: Row | _Constructed
+    source: LieAlgebra
+    number: int
     values: tuple[Scalar, ...]
     images: ExactMatrix
     largest: bool = True  # it is proved that no larger parameters give an isomorphic algebra
+
+    @property
+    def place(self) -> tuple[int, int]:
+        """Where the tables have it, the largest dimension first."""
+        return -self.source.dimension, self.number
 
 
 def identify(algebra: LieAlgebra, most_degree: int | None = None) -> Identification:
@@ -128,9 +116,9 @@ def _identified(algebra: LieAlgebra, most_degree: int | None = None) -> tuple[Id
                 raise UndecidedError(f"the name needs a field of degree {up.field.degree}") from error
             continue
         field = up.field
-        source = direct_sum(*(part.row.algebra(part.values, field) for part in parts)) if parts else algebra
-        flat = sum(part.row.dimension == 1 for part in parts)
-        names = [part.row.name(part.values, field) for part in parts if part.row.dimension > 1]
+        source = direct_sum(*(part.source for part in parts)) if parts else algebra
+        flat = sum(part.source.dimension == 1 for part in parts)
+        names = [part.source.name or "" for part in parts if part.source.dimension > 1]
         name = "+".join([*names, *([f"R^{flat}" if flat > 1 else "R"] if flat else [])]) or "0"
         named = LieAlgebra(source.table, basis=source.basis_names, name=name, check=False)  # checked as a sum of rows
         images = field.stack_rows([part.images for part in parts], algebra.dimension)
@@ -145,54 +133,38 @@ def _parts(algebra: LieAlgebra) -> list[_Part]:
         inner = ideal.as_algebra()
         part = _named(inner)
         parts.append(replace(part, images=part.images @ as_exact(ideal.basis)))
-    return sorted(parts, key=lambda part: (-part.row.dimension, part.row.number, part.values))
+    return sorted(parts, key=lambda part: (part.place, part.values))
 
 
 def _named(algebra: LieAlgebra) -> _Part:
-    """The row of an indecomposable algebra."""
+    """The name of an indecomposable algebra."""
     field, n = exact_field(algebra, "names of algebras"), algebra.dimension
     if n == 1:
-        return _Part(rows()[1, 1], (), field.identity(1))
+        return _Part(rows()[1, 1].algebra((), field), 1, (), field.identity(1))
     _require_real_summands(algebra)
-    radical = algebra.radical().dimension
-    if radical == n and n <= 6 and algebra.is_nilpotent():
+    levi = n - algebra.radical().dimension
+    if levi == 0 and n <= 6 and algebra.is_nilpotent():
         options = _nilpotent_candidates(algebra)
-    elif radical == n and n <= 5:
+    elif levi == 0 and n <= 5:
         options = _solvable_candidates(algebra)
-    elif n - radical == 3 and n in (3, 5):
+    elif levi == 3 and n <= 6:
         options = _candidates_with_levi_factor(algebra)
-    elif n == 6 and n - radical == 3:
-        return _with_levi_factor(algebra)
     else:
         _undecided(algebra)
     turn = _complex_structure(algebra) if n == 6 else None
-    open_rows: set[Row] = set()
-    for row, values, seeds, cosets in options:
-        source = row.algebra(values, field)
+    undecided: set[int] = set()
+    for number, source, values, basis, seeds, cosets in options:
         try:
             mine = _complex_structure(source) if n == 6 else None
             if (mine is None) != (turn is None):
                 continue  # only one of them is an algebra over the complex numbers
             both = (mine, turn) if mine is not None and turn is not None else None
-            images = find_isomorphism(source, algebra, seeds, cosets, both)
+            images = find_isomorphism(source.change_of_basis(basis), algebra, seeds, cosets, both)
         except UndecidedError:
-            open_rows.add(row)
+            undecided.add(number)
             continue
         if images is not None:
-            return _Part(row, values, images, row not in open_rows)
-    _undecided(algebra)
-
-
-def _with_levi_factor(algebra: LieAlgebra) -> _Part:
-    """The name of an indecomposable algebra of dimension 6 with a Levi factor of dimension 3 and a radical."""
-    field = exact_field(algebra, "names of algebras")
-    for named in _WITH_LEVI_FACTOR:
-        source = named.algebra((), field)
-        if _structural_difference(source, algebra) is None:
-            basis, seeds, cosets = _with_simple_levi_factors(source, algebra)
-            images = find_isomorphism(source.change_of_basis(basis), algebra, seeds, cosets)
-            if images is not None:
-                return _Part(named, (), basis.inverse() @ images)
+            return _Part(source, number, values, basis.inverse() @ images, number not in undecided)
     _undecided(algebra)
 
 
@@ -236,18 +208,19 @@ def _complex_structure(algebra: LieAlgebra) -> ExactMatrix | None:
 
 Seeds = list[tuple[ExactMatrix, ExactMatrix]]
 Cosets = Mapping[int, tuple[ExactMatrix, ExactMatrix]]
-Option = tuple[Row, tuple[Scalar, ...], Seeds, Cosets]
+Option = tuple[int, LieAlgebra, tuple[Scalar, ...], ExactMatrix, Seeds, Cosets]
+"""Number, algebra and parameters of a row, a basis, subspaces that correspond, and images of elements of the basis."""
 
 
 # -- nilpotent algebras --------------------------------------------------------------------------------------
 def _nilpotent_candidates(algebra: LieAlgebra) -> Iterator[Option]:
     field = exact_field(algebra, "names of algebras")
-    for (n, _), row in rows().items():
+    for (n, number), row in rows().items():
         if n == algebra.dimension and _kind(_sample(row)) == _kind(algebra):
             for signs in product(SIGNS, repeat=len(row.parameters)):
                 values = tuple(field.one * sign for sign in signs)
                 if row.holds(values):
-                    yield row, values, [], {}
+                    yield number, row.algebra(values, field), values, field.identity(n), [], {}
 
 
 @lru_cache(maxsize=256)
@@ -422,7 +395,7 @@ def _solvable_candidates(algebra: LieAlgebra) -> Iterator[Option]:
             for values in _completed(row, pattern, known, field):
                 options.setdefault((values, tuple(at), tuple(across)), (values, at, turned, matrix))
         for values, at, turned, matrix in sorted(options.values(), key=lambda o: o[0], reverse=True):
-            yield row, values, *_bounds(pattern, n, weights, matrix, [
+            yield row.number, row.algebra(values, field), values, *_bounds(pattern, weights, matrix, [
                 *(([i], spaces[k].rows) for (i, _), k in zip(pattern.real, at, strict=True)),
                 *(([i, i + 1], pairs[k].rows) for (i, *_), (k, _) in zip(pattern.pairs, turned, strict=True)),
             ])  # fmt: skip
@@ -493,42 +466,66 @@ def _completed(
 
 
 def _bounds(
-    pattern: _Pattern, n: int, weights: _Weights, matrix: ExactMatrix, assigned: list[tuple[list[int], ExactMatrix]]
-) -> tuple[Seeds, Cosets]:
-    """The weight spaces that correspond, and where the acting basis elements are mapped to."""
-    one = matrix.field.identity(n)
+    pattern: _Pattern, weights: _Weights, matrix: ExactMatrix, assigned: list[tuple[list[int], ExactMatrix]]
+) -> tuple[ExactMatrix, Seeds, Cosets]:
+    """The basis, the weight spaces that correspond, and where the acting basis elements are mapped to."""
+    one = matrix.field.identity(weights.acting.ncols)
     joined: dict[ExactMatrix, list[int]] = {}
     for indices, space in assigned:
         joined.setdefault(space, []).extend(indices)
     seeds = [(one.select(rows=indices), space) for space, indices in joined.items()]
     images = matrix @ weights.acting
-    return seeds, {a: (images.select(rows=[r]), weights.central) for r, a in enumerate(pattern.acting)}
+    return one, seeds, {a: (images.select(rows=[r]), weights.central) for r, a in enumerate(pattern.acting)}
 
 
-# -- simple algebras of dimension 3 --------------------------------------------------------------------------
+# -- Levi factors of dimension 3 -----------------------------------------------------------------------------
 def _candidates_with_levi_factor(algebra: LieAlgebra) -> Iterator[Option]:
-    """sl(2), so(3) and the sum of sl(2) with its representation of dimension 2: the image of one element is given."""
     field, n = exact_field(algebra, "names of algebras"), algebra.dimension
-    levi, radical = algebra.levi_decomposition()
-    killing = as_exact(levi.as_algebra().killing_form())
-    compact = killing.signature()[1] == 3
-    row = rows()[5, 40] if n == 5 else rows()[3, 9 if compact else 8]
-    if n == 5 and compact:
+    sums = enumerate((build().over(field) for build in _WITH_LEVI_FACTOR), 100) if n == 6 else ()
+    simple = ((k, rows()[n, k].algebra((), field)) for k in {3: (8, 9), 5: (40,)}.get(n, ()))
+    for number, source in (*sums, *simple):
+        if source.killing_signature() == algebra.killing_signature():
+            yield from ((number, source, (), *option) for option in _with_simple_levi_factors(source, algebra))
+
+
+def _with_simple_levi_factors(first: LieAlgebra, second: LieAlgebra) -> Iterator[tuple[ExactMatrix, Seeds, Cosets]]:
+    """A basis of the first algebra, subspaces that correspond, and the images of its first two elements.
+
+    Levi factors are conjugate. So are pairs of orthogonal elements of one length in so(3). In sl(2) the elements x of
+    one positive length are conjugate, and those that fix x multiply an eigenvector of ad x by any positive number.
+    """
+    field, n = exact_field(first, "isomorphisms"), first.dimension
+    (frame, *mine), (images, *others) = map(_levi_frame, (first, second))
+    basis = field.stack_rows([frame, complement_rows(field.identity(n), frame)], n)
+    if not frame.nrows:
+        yield basis, [], {}
         return
-    form, basis = killing.scale(-1) if compact else killing, as_exact(levi.basis)
-    element, length = _of_square_length(form)
-    one, none = field.identity(n), field.zeros(0, n)
-    cosets = {2 if compact else 1: (element @ basis.scale((2 if n == 5 else 1) / length), none)}
-    if compact:  # a second element, orthogonal to the first one
-        across = (form @ element.T).left_null_space()
-        second, length = _of_square_length(across @ form @ across.T)
-        cosets[0] = (second @ across @ basis.scale(field.one / length), none)
-    seeds = [(one.select(rows=range(3)), basis), (one.select(rows=range(3, n)), as_exact(radical.basis))]
-    yield row, (), seeds, cosets
+    inverse, none = basis.inverse(), field.zeros(0, n)
+    seeds = [(part @ inverse, other) for part, other in zip(mine, others, strict=True)]
+    x, y = images.split_rows(1, n)
+    yield from ((basis, seeds, {0: (x, none), 1: (image, none)}) for image in (y, -y))
 
 
-def _of_square_length(form: ExactMatrix) -> tuple[ExactMatrix, Scalar]:
-    """A vector x and a root of form(x, x) / 2 > 0; `LargerFieldError` if no small vector has a root in the field."""
+def _levi_frame(algebra: LieAlgebra) -> tuple[ExactMatrix, ExactMatrix, ExactMatrix]:
+    """Two elements of a Levi factor, none if its dimension is not 3, and then the Levi factor and the radical."""
+    field, n = exact_field(algebra, "isomorphisms"), algebra.dimension
+    levi, radical = (as_exact(part.basis) for part in algebra.levi_decomposition())
+    if levi.nrows != 3:
+        return field.zeros(0, n), levi, radical
+    inner = Subalgebra(algebra, levi, check=False).as_algebra()
+    form = as_exact(inner.killing_form())
+    if form.signature()[1] == 3:
+        x = _of_length_one(-form)
+        plane = (form @ x.T).left_null_space()
+        y = _of_length_one(plane @ -form @ plane.T) @ plane
+    else:
+        x = _of_length_one(form)
+        y = (inner.ad(x).T - field.identity(3)).left_null_space()
+    return field.stack_rows([x, y], 3) @ levi, levi, radical
+
+
+def _of_length_one(form: ExactMatrix) -> ExactMatrix:
+    """A vector x with form(x, x) = 2; `LargerFieldError` if no multiple of a small vector over the field is one."""
     field, positive = form.field, []
     small = sorted(product(range(-2, 3), repeat=form.nrows), key=lambda row: (sum(map(abs, row)), row))
     for x in chain((field.matrix([entries]) for entries in small), orthogonal_basis(form)[0]):
@@ -537,7 +534,7 @@ def _of_square_length(form: ExactMatrix) -> tuple[ExactMatrix, Scalar]:
             f = Polynomial(field, [-square, 0, 1])
             roots = [-g.monic().coefficients[0] for g, _ in f.factor() if g.degree == 1]
             if roots:
-                return x, abs(roots[0])
+                return x.scale(field.one / abs(roots[0]))
             positive.append(f)
     raise LargerFieldError.of(positive[0], 1)
 
@@ -589,7 +586,7 @@ def _compared(first: LieAlgebra, second: LieAlgebra) -> tuple[str | None, Homomo
     """How the names of two algebras differ, and an isomorphism if they do not."""
     one, up, parts = _identified(first)
     two, further, others = _identified(over_extension(second, up))
-    rows_differ = [part.row for part in parts] != [part.row for part in others]
+    rows_differ = [part.place for part in parts] != [part.place for part in others]
     if rows_differ or tuple(map(further.embed, one.parameters)) != two.parameters:
         if not (rows_differ or all(part.largest for part in (*parts, *others))):
             raise UndecidedError(f"{one.name} and {two.name} may be isomorphic")
@@ -618,40 +615,19 @@ def _searched(first: LieAlgebra, second: LieAlgebra) -> Homomorphism | None:
     while first.dimension <= MAX_SEARCHED and not first.is_semisimple():
         source, target = over_extension(first, up), over_extension(second, up)
         try:
-            basis, seeds, cosets = _with_simple_levi_factors(source, target)
-            images = find_isomorphism(source.change_of_basis(basis), target, seeds, cosets)
+            for basis, seeds, cosets in _with_simple_levi_factors(source, target):
+                images = find_isomorphism(source.change_of_basis(basis), target, seeds, cosets)
+                if images is not None:
+                    return Homomorphism(source, target, (basis.inverse() @ images).T)
+            return None
         except LargerFieldError as error:
             up = up.then(error.extension)
-            continue
-        return None if images is None else Homomorphism(source, target, (basis.inverse() @ images).T)
     if first.is_semisimple():
         raise UndecidedError(
             f"{first!r} and {second!r} are isomorphic over the reals, both {first.real_form()}, but no map is made "
             "between simple ideals of dimension above 3"
         )
     raise UndecidedError(f"no isomorphism from {first!r} to {second!r} was found, and no invariant that differs")
-
-
-def _with_simple_levi_factors(first: LieAlgebra, second: LieAlgebra) -> tuple[ExactMatrix, Seeds, Cosets]:
-    """A basis of the first algebra, subspaces that correspond, and the image of its first element.
-
-    Levi factors are conjugate, and so are elements of one length in so(3), and in sl(2) if the length is positive.
-    """
-    field, n = exact_field(first, "isomorphisms"), first.dimension
-    one = field.identity(n)
-    found = []
-    for algebra in (first, second):
-        levi, radical = (as_exact(part.basis) for part in algebra.levi_decomposition())
-        if levi.nrows != 3:
-            return one, [], {}
-        killing = as_exact(Subalgebra(algebra, levi, check=False).as_algebra().killing_form())
-        element, length = _of_square_length(killing.scale(-1) if killing.signature()[1] == 3 else killing)
-        found.append(((element @ levi).scale(field.one / length), levi, radical))
-    (x, levi, radical), (image, *others) = found
-    basis = field.stack_rows([x, complement_rows(one, x)], n)
-    inverse = basis.inverse()
-    seeds = [(mine @ inverse, other) for mine, other in zip((levi, radical), others, strict=True)]
-    return basis, seeds, {0: (image, field.zeros(0, n))}
 
 
 def is_isomorphic(first: LieAlgebra, second: LieAlgebra) -> bool:

@@ -2,3 +2,7 @@
 
 Answers are exact and in any basis; see docs/theory/representations.md.
 """
+
+from liehom.base.lazy import lazy_modules
+
+__getattr__ = lazy_modules(__name__)

@@ -37,6 +37,7 @@ from liehom.exact.representations.highest_weight.weights import (
     congruency_class,
     dual_weight,
     dynkin_index,
+    of_simple,
     weight_space,
 )
 from liehom.exact.scalars.rational import QQ
@@ -52,9 +53,23 @@ ChargeRows = tuple[tuple[Fraction, ...], ...]
 LARGEST_NAMED = 10_000_000  # above this dimension a module has its weight in its name instead of primes
 
 
+def module_name(system: RootSystem | str, weight: Sequence[int]) -> str:
+    """The name of an irreducible module of a simple algebra by its dimension, such as '16', '5bar', "15'" or '8s'.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> product = lh.tensor_product_decomposition("A4", [0, 0, 0, 1], [0, 1, 0, 0])
+    >>> " + ".join(lh.representations.module_name("A4", top) for top in product)
+    '45 + 5'
+    """
+    roots, _, top = of_simple(system, weight)
+    ((kind, nodes),) = roots.components()
+    return _module_name(kind, tuple(top[i] for i in nodes))
+
+
 @lru_cache(maxsize=4096)
-def module_name(kind: str, weight: Weight) -> str:
-    """The name of an irreducible module of a simple algebra, such as '16', '5bar', "15'" or '8s'."""
+def _module_name(kind: str, weight: Weight) -> str:
     size, letters = module_size(kind, weight), ""
     if size > LARGEST_NAMED:
         return f"{size}[{','.join(map(str, weight))}]"
@@ -298,7 +313,7 @@ class BranchingRule:
         if isinstance(module, str):
             size = re.match(r"\d{1,7}(?!\d)", module)
             same = modules_of_size(self.type, int(size[0])) if size and "+" not in self.type else ()
-            named = [mu for mu in same if module_name(self.type, mu) == module]
+            named = [mu for mu in same if _module_name(self.type, mu) == module]
             if not named:
                 raise InputError(f"{displayed(module)} does not name a module of {self.type}; give its highest weight")
             module = named[0]
@@ -329,7 +344,7 @@ class BranchingRule:
             for top, m in irreducible_parts(space, dominant).items():
                 tops = tuple(tuple(top[i] for i in part) for part in places)
                 kinds = list(zip(self.factors, tops, strict=True))
-                names = tuple(module_name(*pair) for pair in kinds)
+                names = tuple(_module_name(*pair) for pair in kinds)
                 terms.append(BranchingTerm(m, tops, charges, prod(module_size(*pair) for pair in kinds), names))
         terms.sort(key=lambda t: (-t.dimension, [-c for c in t.charges], _plainness(t.names), t.names))
         return Branching(self, tuple(terms))

@@ -316,15 +316,13 @@ SPECIAL = {
 def maximal_subalgebras(algebra: LieAlgebra | str) -> tuple[BranchingRule, ...]:
     """The branching rules for the maximal reductive subalgebras of a complex simple algebra, up to its automorphisms.
 
+    Regular semisimple ones come first, then regular ones with a u(1), which a parabolic subalgebra contains, then
+    special ones.
+
     Parameters
     ----------
     algebra : str or LieAlgebra
         A type such as 'E6', the name of a real form such as 'so(10)', or a simple algebra, of which the type is taken.
-
-    Returns
-    -------
-    tuple of BranchingRule
-        Regular semisimple ones, regular ones with a u(1), which a parabolic subalgebra contains, then special ones.
 
     References
     ----------

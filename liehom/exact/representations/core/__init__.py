@@ -2,3 +2,7 @@
 
 The two classes are tables of contents whose methods lead upwards; see docs/theory/representations.md.
 """
+
+from liehom.base.lazy import lazy_modules
+
+__getattr__ = lazy_modules(__name__)

@@ -18,6 +18,7 @@ from liehom.exact.algebra.core.lie_algebra import LieAlgebra
 from liehom.exact.algebra.core.subalgebra import Subalgebra
 from liehom.exact.algebra.linear.closure import Completion, lie_closure, square_matrices
 from liehom.exact.algebra.linear.complex_matrices import as_real_matrices
+from liehom.exact.representations import analysis, core
 from liehom.exact.representations.core.coordinates import (
     Coordinates,
     Copies,
@@ -291,12 +292,7 @@ class Representation(Displayed, Immutable):
         return n
 
     def real_point(self, point: VectorLike | MatrixLike) -> list[ScalarLike]:
-        """The N real coordinates of a point, which may be complex.
-
-        Parameters
-        ----------
-        point : array_like
-            N real numbers; on C^n also n complex numbers; on Hermitian matrices also a Hermitian matrix (n, n).
+        """The N real coordinates of a point, given by them, on C^n also by n complex numbers, or by a Hermitian matrix.
 
         Examples
         --------
@@ -339,8 +335,6 @@ class Representation(Displayed, Immutable):
         ------
         NotInSpanError
             If the matrix is not in rho(g); `residual` is its relative distance from rho(g).
-        InputError
-            If rho is not faithful, so that x is not unique.
 
         Examples
         --------
@@ -350,9 +344,7 @@ class Representation(Displayed, Immutable):
         >>> lh.defining("so(3)").element([[0, 0, 0], [0, 0, 2], [0, -2, 0]])
         array([0, 0, -2], dtype=object)
         """
-        from liehom.exact.representations.core.elements import coordinates_of
-
-        return self.algebra._vector(coordinates_of(self, matrix, hermitian=hermitian).row(0))
+        return self.algebra._vector(core.elements.coordinates_of(self, matrix, hermitian=hermitian).row(0))
 
     def subalgebra(self, matrices: Iterable[MatrixLike], *, hermitian: bool = False) -> Subalgebra:
         """The subalgebra of g whose elements have these matrices as a basis.
@@ -377,12 +369,12 @@ class Representation(Displayed, Immutable):
         >>> lh.defining("su(2)").subalgebra([[["i", 0], [0, "-i"]]]).rows()
         [[0, 0, 1]]
         """
-        from liehom.exact.representations.core.elements import rows_of_matrices
-
-        return self.algebra.subalgebra(rows_of_matrices(self, matrices, hermitian=hermitian))
+        return self.algebra.subalgebra(core.elements.rows_of_matrices(self, matrices, hermitian=hermitian))
 
     def isotropy(self, point: VectorLike | MatrixLike) -> Subalgebra:
         """The isotropy subalgebra {x : rho(x) point = 0}.
+
+        If an entry of the point is a float, the answer is numerical: a subalgebra of ``algebra.over(RR)``.
 
         Parameters
         ----------
@@ -390,15 +382,8 @@ class Representation(Displayed, Immutable):
             Entries in the representation's field, or floats. Complex vectors and Hermitian matrices where `real_point`
             takes them.
 
-        Returns
-        -------
-        Subalgebra
-            Of `algebra`. If an entry is a float, the answer is numerical: a subalgebra of ``algebra.over(RR)``.
-
         Raises
         ------
-        InputError
-            If a coordinate has free symbols; see `symbolic_isotropy`.
         UndecidedError
             If floats do not decide the dimension: a singular value is within a factor 100 of the error.
 
@@ -428,8 +413,6 @@ class Representation(Displayed, Immutable):
 
         Raises
         ------
-        InputError
-            If a coordinate is not a rational function of the symbols (write cos and sin by a rational parameter).
         FieldError
             If a coefficient of the point is a float.
 
@@ -449,9 +432,7 @@ class Representation(Displayed, Immutable):
         >>> lh.defining(lh.so(3)).symbolic_isotropy(["x", 0, 0]).nonvanishing
         x
         """
-        from liehom.exact.representations.analysis.symbolic import symbolic_isotropy
-
-        return symbolic_isotropy(self, point)
+        return analysis.symbolic.symbolic_isotropy(self, point)
 
     def orbit_dimension(self, point: VectorLike | MatrixLike) -> int:
         """Dimension of the orbit through a point: dim g minus the dimension of the isotropy subalgebra.
@@ -594,13 +575,6 @@ class Representation(Displayed, Immutable):
     def commutant_type(self) -> CommutantType:
         """'R', 'C' or 'H': the algebra of real matrices that commute with an irreducible representation.
 
-        Raises
-        ------
-        InputError
-            If the representation is reducible over the reals; use `decomposition`.
-
-        Notes
-        -----
         By Schur's lemma and Frobenius' theorem the commutant over R is a division algebra, of dimension 1, 2 or 4.
 
         Examples
@@ -609,9 +583,7 @@ class Representation(Displayed, Immutable):
         >>> [lh.defining(g).commutant_type() for g in (lh.so(3), lh.su(3), lh.su(2))]
         ['R', 'C', 'H']
         """
-        from liehom.exact.representations.analysis.isotypic import commutant_type
-
-        return commutant_type(*self._action(), semisimple=self._is_visibly_semisimple())
+        return analysis.isotypic.commutant_type(*self._action(), semisimple=self._is_visibly_semisimple())
 
     def invariant_forms(self) -> InvariantForms:
         """Bases of the symmetric and of the skew-symmetric forms P with rho(x)^T P + P rho(x) = 0 for all x.
@@ -634,12 +606,6 @@ class Representation(Displayed, Immutable):
             J with J^2 = -d for a number d > 0, commuting with all rho(x). By default the representation must be
             irreducible of type C (J is in its commutant) or H (three units of its commutant give quaternionic forms).
 
-        Raises
-        ------
-        InputError
-            If J does not commute with the representation, or its square is not a negative number; without J, if the
-            representation is reducible or of type R.
-
         Examples
         --------
         >>> import liehom as lh
@@ -650,9 +616,7 @@ class Representation(Displayed, Immutable):
         >>> forms.kind, len(forms.skew_hermitian)
         ('quaternionic', 1)
         """
-        from liehom.exact.representations.analysis.decomposition import hermitian_forms
-
-        return hermitian_forms(self._exact(), structure)
+        return analysis.decomposition.hermitian_forms(self._exact(), structure)
 
     def invariant_vectors(self) -> Subspace:
         """The subspace of vectors v with rho(x) v = 0 for all x.
@@ -668,11 +632,6 @@ class Representation(Displayed, Immutable):
     def invariants(self, degree: int) -> list[Expression]:
         """A basis of the homogeneous invariant polynomials of a degree, sympy expressions in x0, x1, ...
 
-        Parameters
-        ----------
-        degree : int
-            The degree, at least 1.
-
         Raises
         ------
         LimitError
@@ -686,9 +645,7 @@ class Representation(Displayed, Immutable):
         >>> len(lh.adjoint(lh.sl(3)).invariants(6))
         2
         """
-        from liehom.exact.representations.analysis.polynomial_invariants import invariants
-
-        return invariants(self._exact(), degree)
+        return analysis.polynomial_invariants.invariants(self._exact(), degree)
 
     def hilbert_series(self) -> HilbertSeries:
         """The Hilbert series (Molien series) of the ring of invariant polynomials, as a rational function.
@@ -711,16 +668,12 @@ class Representation(Displayed, Immutable):
         >>> cubics.hilbert_series(), lh.defining(lh.so(5)).hilbert_series().degrees
         (1/(1 - t^4), (2,))
         """
-        from liehom.exact.representations.analysis.polynomial_invariants import hilbert_series
-
-        return hilbert_series(self._exact())
+        return analysis.polynomial_invariants.hilbert_series(self._exact())
 
     # -- irreducible parts -------------------------------------------------------------------------------
     def is_irreducible(self) -> bool:
         """Whether no subspace of R^N except 0 and R^N is invariant, decided exactly over the reals.
 
-        Notes
-        -----
         Irreducible over QQ is weaker: a representation with commutant QQ(sqrt(2)) is reducible over the reals. The
         zero space is not irreducible.
 
@@ -745,9 +698,7 @@ class Representation(Displayed, Immutable):
         >>> lh.adjoint(lh.so(4)).is_completely_reducible(), lh.adjoint(lh.euclidean(2)).is_completely_reducible()
         (True, False)
         """
-        from liehom.exact.representations.analysis.submodules import is_completely_reducible
-
-        return is_completely_reducible(self._exact())
+        return analysis.submodules.is_completely_reducible(self._exact())
 
     def socle(self) -> Subspace:
         """The largest completely reducible subspace, the sum of all irreducible ones over the field or the reals.
@@ -760,9 +711,7 @@ class Representation(Displayed, Immutable):
         >>> lh.Representation.from_matrices([[[1, 1], [0, 1]]]).socle().rows()
         [[1, 0]]
         """
-        from liehom.exact.representations.analysis.submodules import socle
-
-        return socle(self._exact())
+        return analysis.submodules.socle(self._exact())
 
     def maximal_submodules(self) -> MaximalSubmodules:
         """The maximal proper invariant subspaces over the reals, finitely many or in families.
@@ -774,9 +723,7 @@ class Representation(Displayed, Immutable):
         >>> [space.dimension for space in rho.maximal_submodules().isolated]
         [3]
         """
-        from liehom.exact.representations.analysis.submodules import maximal_submodules
-
-        return maximal_submodules(self._exact())
+        return analysis.submodules.maximal_submodules(self._exact())
 
     def decomposition(self) -> Decomposition:
         """The decomposition into irreducible representations over the reals, exact.
@@ -798,22 +745,17 @@ class Representation(Displayed, Immutable):
         >>> lh.adjoint(lh.so(4)).decomposition().dimensions()
         [3, 3]
         """
-        from liehom.exact.representations.analysis.decomposition import decomposition
-
-        return decomposition(self._exact())
+        return analysis.decomposition.decomposition(self._exact())
 
     # -- weights -----------------------------------------------------------------------------------------
     def weights(self) -> dict[Any, int]:
         """The weights of a representation of a reductive algebra, in any basis, with their multiplicities.
 
-        Returns
-        -------
-        dict
-            {weight: multiplicity}. For a semisimple algebra a weight is a tuple of int, in fundamental coordinates in
-            Bourbaki's numbering of ``algebra.semisimple_type()``. If the algebra has a centre, it is a `ChargedWeight`:
-            the weight of the derived algebra in this form, and the charges, exact complex numbers, one for each row of
-            ``algebra.center()``. These are the weights of the complexification, so that charges that are not real occur
-            in conjugate pairs.
+        {weight: multiplicity}. For a semisimple algebra a weight is a tuple of int, in fundamental coordinates in
+        Bourbaki's numbering of ``algebra.semisimple_type()``. If the algebra has a centre, it is a `ChargedWeight`: the
+        weight of the derived algebra in this form, and the charges, exact complex numbers, one for each row of
+        ``algebra.center()``. These are the weights of the complexification, so that charges that are not real occur in
+        conjugate pairs.
 
         Raises
         ------
@@ -837,9 +779,7 @@ class Representation(Displayed, Immutable):
         (1,) (-i,) 1
         (-1,) (-i,) 1
         """
-        from liehom.exact.representations.analysis.weight_multiplicities import weight_multiplicities
-
-        return weight_multiplicities(self._exact())
+        return analysis.weight_multiplicities.weight_multiplicities(self._exact())
 
     def highest_weights(self) -> dict[Any, int]:
         """The highest weights of the irreducible parts of the complexification, with their multiplicities.
@@ -863,9 +803,7 @@ class Representation(Displayed, Immutable):
         >>> lh.defining(lh.gl(3)).highest_weights()
         {ChargedWeight(weight=(1, 0), charges=(1,)): 1}
         """
-        from liehom.exact.representations.analysis.weight_multiplicities import highest_weights
-
-        return highest_weights(self._exact())
+        return analysis.weight_multiplicities.highest_weights(self._exact())
 
     def intertwiners(self, other: Representation) -> list[ExactMatrix]:
         """A basis of the maps T, shape (M, N), with T rho(x) = sigma(x) T for all x.
@@ -879,9 +817,7 @@ class Representation(Displayed, Immutable):
         >>> len(rho.intertwiners(lh.adjoint(lh.so(3)))), len(rho.tensor(rho).intertwiners(lh.adjoint(lh.so(3))))
         (1, 1)
         """
-        from liehom.exact.representations.analysis.decomposition import intertwining_maps
-
-        return intertwining_maps(self, other)
+        return analysis.decomposition.intertwining_maps(self, other)
 
     def equivalence(self, other: Representation) -> ExactMatrix | None:
         """An invertible T with T rho(x) = sigma(x) T for all x, or None: the representations are not equivalent.
@@ -904,9 +840,7 @@ class Representation(Displayed, Immutable):
         >>> rho.equivalence(rho.dual()) is None, rho.equivalence(lh.representations.trivial(lh.sl(2), 2)) is None
         (False, True)
         """
-        from liehom.exact.representations.analysis.decomposition import equivalence
-
-        return equivalence(self, other)
+        return analysis.decomposition.equivalence(self, other)
 
     def is_equivalent(self, other: Representation) -> bool:
         """Whether two representations are equivalent, over their field or over the reals: both are the same.
@@ -930,17 +864,10 @@ class Representation(Displayed, Immutable):
         >>> lh.adjoint(lh.so(4)).submodule([[1, 0, 0, 0, 0, 1]]).dimension
         3
         """
-        from liehom.exact.representations.analysis.submodules import generated_submodule
-
-        return generated_submodule(self._exact(), rows)
+        return analysis.submodules.generated_submodule(self._exact(), rows)
 
     def subrepresentation(self, subspace: Subspace | MatrixLike) -> Representation:
-        """The restriction to an invariant subspace, in the basis of the subspace.
-
-        Parameters
-        ----------
-        subspace : Subspace, or rows of shape (k, N)
-            Rows must be independent; they are the basis.
+        """The restriction to an invariant subspace, in the basis of the subspace or of independent rows (k, N).
 
         Raises
         ------
@@ -958,9 +885,7 @@ class Representation(Displayed, Immutable):
         >>> lh.adjoint(lh.gl(2)).subrepresentation([[1, 0, 0, 1]]).matrices[0].is_zero()
         True
         """
-        from liehom.exact.representations.analysis.submodules import subrepresentation
-
-        return subrepresentation(self._exact(), subspace)
+        return analysis.submodules.subrepresentation(self._exact(), subspace)
 
     def quotient(self, subspace: Subspace | MatrixLike) -> Representation:
         """The representation on the quotient by an invariant subspace, in the basis of `scalars.spaces.quotient`.
@@ -974,9 +899,7 @@ class Representation(Displayed, Immutable):
         >>> lh.adjoint(lh.heisenberg(1)).quotient([[0, 0, 1]]).size
         2
         """
-        from liehom.exact.representations.analysis.submodules import quotient_representation
-
-        return quotient_representation(self._exact(), subspace)
+        return analysis.submodules.quotient_representation(self._exact(), subspace)
 
     def invariant_complement(self, subspace: Subspace | MatrixLike) -> Subspace:
         """An invariant complement of an invariant subspace: the kernel of a projection that commutes with all rho(x).
@@ -992,9 +915,7 @@ class Representation(Displayed, Immutable):
         >>> lh.adjoint(lh.gl(2)).invariant_complement([[1, 0, 0, 1]]).rows()
         [[1, 0, 0, -1], [0, 1, 0, 0], [0, 0, 1, 0]]
         """
-        from liehom.exact.representations.analysis.submodules import invariant_complement
-
-        return invariant_complement(self._exact(), subspace)
+        return analysis.submodules.invariant_complement(self._exact(), subspace)
 
     # -- private helpers -------------------------------------------------------------------
     def _read_in(self, field: Field, matrix: Matrix) -> Matrix:
@@ -1018,9 +939,7 @@ class Representation(Displayed, Immutable):
 
     def _generating(self) -> tuple[ExactMatrix, ...]:
         """A few matrices with the commutant and invariant subspaces of all rho(x); `UndecidedError` over float64."""
-        from liehom.exact.representations.core.elements import generating_matrices
-
-        return generating_matrices(self._exact())
+        return core.elements.generating_matrices(self._exact())
 
     def _action(self) -> tuple[tuple[ExactMatrix, ...], int, Field, tuple[ExactMatrix, ...]]:
         """The matrices rho(e_i), their size and field, and matrices that generate them; exact only."""
@@ -1028,9 +947,7 @@ class Representation(Displayed, Immutable):
 
     def _is_visibly_semisimple(self) -> bool:
         """Whether the algebra is semisimple, where its Killing form costs less than the trace form of the matrices."""
-        from liehom.exact.representations.analysis.submodules import is_visibly_semisimple
-
-        return 0 < self._exact().algebra.dimension <= self.size and is_visibly_semisimple(self)
+        return 0 < self._exact().algebra.dimension <= self.size and analysis.submodules.is_visibly_semisimple(self)
 
     def _induced(self, entry_map: EntryMap, coordinates: Coordinates = "real") -> Representation:
         images = [entry_map(a) for a in self.matrices]

@@ -41,21 +41,10 @@ def weyl_dimension(system: RootSystem | str, weight: Sequence[int]) -> int:
 
 
 def dominant_character(system: RootSystem | str, weight: Sequence[int]) -> dict[Weight, int]:
-    """The multiplicities of the dominant weights of an irreducible module.
+    """The multiplicities of the dominant weights of an irreducible module, {weight: int} by decreasing height.
 
-    Parameters
-    ----------
-    system : RootSystem or str
-    weight : sequence of int
-        Dominant.
+    The arguments are those of `weyl_dimension`.
 
-    Returns
-    -------
-    dict
-        {dominant weight: multiplicity}, by decreasing height.
-
-    Notes
-    -----
     Freudenthal: ((lambda + rho)^2 - (mu + rho)^2) m(mu) = 2 sum_alpha sum_k m(mu + k alpha) (mu + k alpha, alpha),
     over the positive roots alpha and k = 1, 2, ...
 
@@ -70,18 +59,9 @@ def dominant_character(system: RootSystem | str, weight: Sequence[int]) -> dict[
 
 
 def character(system: RootSystem | str, weight: Sequence[int]) -> dict[Weight, int]:
-    """The weights of an irreducible module with their multiplicities.
+    """The multiplicities of all weights of an irreducible module, {weight: int} by decreasing height.
 
-    Parameters
-    ----------
-    system : RootSystem or str
-    weight : sequence of int
-        Dominant.
-
-    Returns
-    -------
-    dict
-        {weight: multiplicity}, by decreasing height.
+    The arguments are those of `weyl_dimension`.
 
     Examples
     --------
@@ -96,21 +76,10 @@ def character(system: RootSystem | str, weight: Sequence[int]) -> dict[Weight, i
 
 
 def decompose_character(system: RootSystem | str, character: Mapping[Sequence[int], int]) -> dict[Weight, int]:
-    """The highest weights, with multiplicities, of the irreducible modules whose characters add up to a given one.
+    """The highest weights, with multiplicities, of the irreducible modules whose characters add up to {weight: int}.
 
-    Parameters
-    ----------
-    system : RootSystem or str
-    character : mapping
-        {weight: multiplicity}, all weights.
+    The argument has all weights; the result is by decreasing height.
 
-    Returns
-    -------
-    dict
-        {highest weight: multiplicity}, by decreasing height.
-
-    Notes
-    -----
     A weight of greatest height is a highest weight; its character is subtracted, and so on.
 
     Examples
@@ -128,21 +97,10 @@ def tensor_product_decomposition(
 ) -> dict[Weight, int]:
     """The highest weights, with multiplicities, of the irreducible parts of the tensor product of two modules.
 
-    Parameters
-    ----------
-    system : RootSystem or str
-    left, right : sequences of int
-        The highest weights, dominant.
+    The arguments are dominant, as in `weyl_dimension`. The result is {weight: int} by decreasing height.
 
-    Returns
-    -------
-    dict
-        {highest weight: multiplicity}, by decreasing height.
-
-    Notes
-    -----
-    The product is the sum over the weights nu of the smaller factor of sign(w) V(w(nu + mu + rho) - rho), where mu
-    is the other highest weight and w takes nu + mu + rho to the dominant chamber; weights on a wall do not contribute.
+    The product is the sum over the weights nu of the smaller factor of sign(w) V(w(nu + mu + rho) - rho). Here mu is
+    the other highest weight, and w takes nu + mu + rho to the dominant chamber. Weights on a wall do not contribute.
 
     Examples
     --------
@@ -162,8 +120,6 @@ def tensor_product_decomposition(
 def symmetric_power_decomposition(system: RootSystem | str, weight: Sequence[int], k: int) -> dict[Weight, int]:
     """The highest weights, with multiplicities, of the irreducible parts of the k-th symmetric power of a module.
 
-    Notes
-    -----
     Newton's identity k S^k = sum_i psi^i S^(k-i), i = 1, ..., k, where the Adams operation psi^i multiplies all weights
     by i. Its product with an irreducible module is decomposed as in `tensor_product_decomposition`.
 

@@ -74,14 +74,7 @@ class AdmissibleLattice:
 
 
 def admissible_lattice(system: RootSystem | str, weight: Sequence[int]) -> AdmissibleLattice:
-    """The admissible lattice of the irreducible module with a given highest weight.
-
-    Parameters
-    ----------
-    system : RootSystem or str
-        A root system, or a type such as 'E8' or 'A2 + G2'.
-    weight : sequence of int
-        Dominant, in fundamental coordinates, in Bourbaki's numbering.
+    """The admissible lattice of the irreducible module with a dominant highest weight, as in `weyl_dimension`.
 
     Examples
     --------
@@ -311,12 +304,6 @@ def highest_weight_module(
     check : bool, optional
         Prove the identity of the matrices again, for the generators with all basis elements (default). The matrices are
         a representation by construction, so the proof only guards against errors of the program.
-
-    Raises
-    ------
-    ShapeError, InputError
-        If the weight does not have one integer, not negative, per simple root, or if the dense matrices would take more
-        than 2 GB.
 
     Notes
     -----

@@ -234,6 +234,9 @@ def real_module_type(form: RealForm | str, weight: Sequence[int]) -> str:
 def real_module(form: RealForm | str, weight: Sequence[int], *, check: bool = True) -> RealModule:
     """The irreducible real module of a real form with a given highest weight.
 
+    Its ``representation`` is a representation of ``liehom.algebra.real_form_of(form.vogan)`` by integer matrices. Its
+    dimension is the dimension of the complex module if the commutant is R, else twice as large.
+
     Parameters
     ----------
     form : RealForm or str
@@ -242,17 +245,6 @@ def real_module(form: RealForm | str, weight: Sequence[int], *, check: bool = Tr
         As in `real_module_type`, numbered by ``RealForm.of_name(form).type``; see the examples.
     check : bool, optional
         Prove the identity of the matrices, for generators with all basis elements (default).
-
-    Returns
-    -------
-    RealModule
-        Its ``representation`` is a representation of ``liehom.algebra.real_form_of(form.vogan)`` by integer matrices.
-        Its dimension is the dimension of the complex module if the commutant is R, else twice as large.
-
-    Raises
-    ------
-    ShapeError, InputError
-        If it is not a dominant integral weight, or if the dense matrices would take more than 2 GB.
 
     Notes
     -----
@@ -397,13 +389,6 @@ class SpinorType:
 def spinor_type(p: int, q: int = 0) -> SpinorType:
     """The commutant, real dimension and number of the spin modules of so(p, q), without their matrices.
 
-    Parameters
-    ----------
-    p, q : int
-        Not negative, with p + q at least 2.
-
-    Notes
-    -----
     With n = p + q, by p - q modulo 8:
 
     ======  ==========  ==============  =========

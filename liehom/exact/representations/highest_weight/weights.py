@@ -126,16 +126,8 @@ def checked_weight(space: WeightSpace, weight: Sequence[int] | str, *, dominant:
 
 
 def weyl_orbit(system: RootSystem | str, weight: Sequence[int]) -> list[Weight]:
-    """The orbit of a weight under the Weyl group, by decreasing height; the dominant weight is first.
+    """The orbit of an integral weight under the Weyl group, by decreasing height; the dominant weight is first.
 
-    Parameters
-    ----------
-    system : RootSystem or str
-    weight : sequence of int
-        In fundamental coordinates, in Bourbaki's numbering; any integral weight.
-
-    Notes
-    -----
     The reflections are s_i(mu) = mu - <mu, alpha_i^vee> alpha_i.
 
     Examples
@@ -151,16 +143,8 @@ def weyl_orbit(system: RootSystem | str, weight: Sequence[int]) -> list[Weight]:
 
 
 def dual_weight(system: RootSystem | str, weight: Sequence[int]) -> Weight:
-    """The highest weight of the dual of the module with a given highest weight.
+    """The highest weight of the dual of the module with a dominant highest weight, as in `weyl_dimension`.
 
-    Parameters
-    ----------
-    system : RootSystem or str
-    weight : sequence of int
-        Dominant.
-
-    Notes
-    -----
     The dual weight is -w_0(lambda), w_0 the longest element of the Weyl group; the lowest weight is w_0(lambda).
 
     Examples
@@ -176,21 +160,10 @@ def dual_weight(system: RootSystem | str, weight: Sequence[int]) -> Weight:
 def frobenius_schur_indicator(system: RootSystem | str, weight: Sequence[int]) -> int:
     """Frobenius-Schur indicator 1, -1 or 0: the module is real, quaternionic or complex for the compact form.
 
-    Parameters
-    ----------
-    system : RootSystem or str
-    weight : sequence of int
-        Dominant.
+    It is 1 if the module has an invariant symmetric form, and is then the complexification of a real module of the
+    compact form. It is -1 if the module has an invariant skew-symmetric form, and is then quaternionic, or pseudo-real.
+    It is 0 if the module is not isomorphic to its dual, and is then complex.
 
-    Returns
-    -------
-    int
-        1 if the module has an invariant symmetric form (it is then the complexification of a real module of the
-        compact form), -1 if an invariant skew-symmetric form (it is then quaternionic, or pseudo-real), 0 if it is not
-        isomorphic to its dual (it is then complex).
-
-    Notes
-    -----
     A self-dual module has an invariant form that is symmetric for even and skew-symmetric for odd <lambda, 2 rho^vee>.
     The module of the split form is real, whatever the indicator.
 
@@ -210,8 +183,6 @@ def frobenius_schur_indicator(system: RootSystem | str, weight: Sequence[int]) -
 def casimir_eigenvalue(system: RootSystem | str, weight: Sequence[int]) -> Fraction:
     """The eigenvalue (lambda, lambda + 2 rho) of the quadratic Casimir element on an irreducible module, a Fraction.
 
-    Notes
-    -----
     The inner product is 2 on long roots, so the value on the adjoint module is twice the dual Coxeter number. Half of
     it is usual in physics, such as 4/3 for the 3 of SU(3).
 
@@ -221,7 +192,7 @@ def casimir_eigenvalue(system: RootSystem | str, weight: Sequence[int]) -> Fract
     >>> [str(casimir_eigenvalue("A2", weight)) for weight in ([1, 0], [1, 1])]
     ['8/3', '6']
     """
-    roots, space, top = _of_simple(system, weight)
+    roots, space, top = of_simple(system, weight)
     shifted = tuple(x + 2 for x in checked_weight(space, top))
     inverse = roots.fundamental_weights()
     in_roots = [sum((x * row[i] for x, row in zip(top, inverse, strict=True)), Fraction(0)) for i in range(space.rank)]
@@ -232,8 +203,6 @@ def casimir_eigenvalue(system: RootSystem | str, weight: Sequence[int]) -> Fract
 def dynkin_index(system: RootSystem | str, weight: Sequence[int]) -> int:
     """Dynkin's index of an irreducible module of a simple algebra, an int: 1 for the smallest module of A_n and C_n.
 
-    Notes
-    -----
     dim V (lambda, lambda + 2 rho) / dim g, with the inner product 2 on long roots. The trace of rho(x) rho(y) is the
     index times that in the smallest module of A_n. The index of a sum is the sum of the indices.
 
@@ -243,7 +212,7 @@ def dynkin_index(system: RootSystem | str, weight: Sequence[int]) -> int:
     >>> dynkin_index("A4", [1, 0, 0, 0]), dynkin_index("D5", [0, 0, 0, 0, 1]), dynkin_index("E8", [0] * 7 + [1])
     (1, 4, 60)
     """
-    roots, space, top = _of_simple(system, weight)
+    roots, space, top = of_simple(system, weight)
     checked_weight(space, top)
     rho = (1,) * space.rank
     size = Fraction(1)
@@ -253,13 +222,10 @@ def dynkin_index(system: RootSystem | str, weight: Sequence[int]) -> int:
 
 
 def congruency_class(system: RootSystem | str, weight: Sequence[int]) -> tuple[int, ...]:
-    """The class of a weight modulo the root lattice, which adds in tensor products.
+    """The class of a weight modulo the root lattice, a tuple of int, which adds in tensor products.
 
-    Returns
-    -------
-    tuple of int
-        One number modulo n + 1 for A_n (the n-ality), modulo 2 for B_n, C_n and E7, modulo 3 for E6, and () for E8, F4
-        and G2. For D_n two numbers: modulo 2, 1 for spinors, and modulo 4.
+    It is one number modulo n + 1 for A_n (the n-ality), modulo 2 for B_n, C_n and E7, modulo 3 for E6, and () for E8,
+    F4 and G2. For D_n it is two numbers: modulo 2, 1 for spinors, and modulo 4.
 
     Examples
     --------
@@ -267,7 +233,7 @@ def congruency_class(system: RootSystem | str, weight: Sequence[int]) -> tuple[i
     >>> congruency_class("A2", [1, 0]), congruency_class("D5", [0, 0, 0, 0, 1]), congruency_class("E8", [1] * 8)
     ((1,), (1, 1), ())
     """
-    roots, _, top = _of_simple(system, weight)
+    roots, _, top = of_simple(system, weight)
     ((name, nodes),) = roots.components()
     n, a = len(nodes), [top[i] for i in nodes]
     if name[0] == "A":
@@ -279,7 +245,7 @@ def congruency_class(system: RootSystem | str, weight: Sequence[int]) -> tuple[i
     return (sum(a[i] for i in places) % order,) if order > 1 else ()
 
 
-def _of_simple(system: RootSystem | str, weight: Sequence[int]) -> tuple[RootSystem, WeightSpace, Weight]:
+def of_simple(system: RootSystem | str, weight: Sequence[int]) -> tuple[RootSystem, WeightSpace, Weight]:
     """The root system of a simple algebra, its weight space and an integral weight, checked."""
     roots = root_system_of(system)
     if len(roots.components()) != 1:

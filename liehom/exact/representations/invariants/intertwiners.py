@@ -335,13 +335,7 @@ def all_maps(over: Field, e: int, d: int) -> list[ExactMatrix]:
 @final
 @dataclass(frozen=True, slots=True)
 class InvariantForms:
-    """The invariant bilinear forms of a set of matrices, P with A^T P + P A = 0.
-
-    Attributes
-    ----------
-    symmetric, skew : tuple of Matrix
-        Bases of the symmetric and of the skew-symmetric forms.
-    """
+    """Bases of the symmetric and of the skew-symmetric forms P with A^T P + P A = 0 for the matrices A of a set."""
 
     symmetric: tuple[ExactMatrix, ...]
     skew: tuple[ExactMatrix, ...]
