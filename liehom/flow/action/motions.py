@@ -285,10 +285,10 @@ def matrix_to_quaternion(matrix: Values) -> Values:
     return row / xp.sqrt(xp.sum(row * row, axis=-1, keepdims=True))
 
 
-# Matrices. Elements of so(3) are vectors x, those of se(3) vectors (omega, v), the angular part first. The differential is
+# Elements of so(3) are vectors x, those of se(3) vectors (omega, v), the angular part first. The differential is
 # trivialized on the right, as everywhere in the library. That is, d/dt exp(x(t)) = dexp_x(x') exp(x) with the operator
-# dexp_x = (exp(ad_x) - 1)/ad_x. For g' = y g and x = log g follows x' = dexp_x^-1(y). log uses quaternions, so no digits
-# are lost near rotations by pi. All functions run on float64, numpy.longdouble and JAX arrays.
+# dexp_x = (exp(ad_x) - 1)/ad_x. For g' = y g and x = log g follows x' = dexp_x^-1(y). log uses quaternions, so no
+# digits are lost near rotations by pi. All functions run on float64, numpy.longdouble and JAX arrays.
 
 
 def quaternion_log(q: Values) -> Values:
