@@ -155,24 +155,9 @@ class RKMK(OneExponential):
 
 @final
 class EmbeddedStep(LocalStep):
-    """A step of a pair of Runge-Kutta methods at one point, with an estimate of its error.
+    """A step of a pair of Runge-Kutta methods at one point, with an estimate of its error; `RKMK.at` returns it.
 
-    `RKMK.at` returns it. The stages for the last h are cached and shared by `factors` and `estimate`.
-
-    Attributes
-    ----------
-    estimate_order : int
-        The estimate is O(h^estimate_order): the lower of the orders of the pair, plus 1.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> import liehom as lh
-    >>> field = lh.GeneratorField(lh.defining(lh.so(2)), ["t"])
-    >>> psi = lh.steps.Generator(field, 1)
-    >>> local = RKMK("heun").at(lh.Action(field.representation), psi, np.array([1.0, 0.0]), np.array([0.0]))
-    >>> local.estimate(np.array([0.2])).round(12), local.estimate_order
-    (array([0.  , 0.02]), 2)
+    The stages for the last h are cached and shared by `factors` and `estimate`.
     """
 
     def __init__(self, stages: Stages) -> None:

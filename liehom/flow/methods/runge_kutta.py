@@ -41,18 +41,7 @@ MAX_ORDER = 14
 class RootedTree:
     """A rooted tree, written as the bracket of the subtrees at its root; the single vertex is ``RootedTree()``.
 
-    Parameters
-    ----------
-    children : tuple of RootedTree
-        The subtrees at the root. Their order does not matter for the tree, but it does for ``==``; `rooted_trees`
-        returns each tree in one order only.
-
-    Examples
-    --------
-    >>> vertex = RootedTree()
-    >>> cherry = RootedTree((vertex, vertex))
-    >>> print(RootedTree((cherry,)), RootedTree((cherry,)).order, RootedTree((cherry,)).density)
-    [[τ, τ]] 4 12
+    The order of the subtrees matters for ``==`` only; `rooted_trees` returns each tree in one order.
     """
 
     children: tuple[RootedTree, ...] = ()
@@ -126,15 +115,7 @@ def checked_order(order: object, what: str = "order") -> int:
 
 
 def rooted_trees(order: int) -> tuple[RootedTree, ...]:
-    """All rooted trees with `order` vertices, each once, in the order in which violations are looked for.
-
-    Examples
-    --------
-    >>> [str(tree) for tree in rooted_trees(4)]
-    ['[τ, τ, τ]', '[[τ], τ]', '[[τ, τ]]', '[[[τ]]]']
-    >>> [len(rooted_trees(n)) for n in range(1, 9)]
-    [1, 1, 2, 4, 9, 20, 48, 115]
-    """
+    """All rooted trees with `order` vertices, each once, in the order in which violations are looked for."""
     level = _level(checked_order(order))
     return tuple(_tree(level.start + i) for i in range(level.count))
 
@@ -262,7 +243,7 @@ class Tableau(Displayed):
         may give row i by its i entries below the diagonal.
     b : array-like (s,)
     order : int, optional
-        The claimed order, from 1 to `rooted_trees.MAX_ORDER`: every condition up to it must hold. By default the
+        The claimed order, from 1 to 14: every condition up to it must hold. By default the
         highest order that holds.
     name : str, optional
         What errors and plots call the method.
@@ -390,7 +371,7 @@ tree [τ] of order 2: weight 1/3, expected 1/2, defect -1/6; claim order 1, whic
         return next((violation for violation, _ in checks if violation is not None), None)
 
     def actual_order(self, *, embedded: bool = False) -> int:
-        """The highest order (at most `rooted_trees.MAX_ORDER`) whose conditions all hold; 0 if sum b is not 1.
+        """The highest order (at most 14) whose conditions all hold; 0 if sum b is not 1.
 
         Examples
         --------

@@ -168,20 +168,8 @@ def _coefficients(c: list[Scalar], field: Field) -> list[list[Scalar]]:
 def gauss(stages: int) -> Tableau:
     """The Gauss method with s stages, of order 2 s: collocation at the zeros of the Legendre polynomial.
 
-    Up to 3 stages it is exact, over QQ, QQ(sqrt(3)) and QQ(sqrt(15)). For 4 and more stages, the nodes are computed
-    with 60 digits, and the coefficients are rounded to float64.
-
-    Parameters
-    ----------
-    stages : int
-        From 1 to 7.
-
-    Examples
-    --------
-    >>> gauss(2)
-    <tableau 'gauss2' of order 4, 2 stages, over QQ(sqrt(3))>
-    >>> gauss(4).order, gauss(4).residual < 1e-15
-    (8, True)
+    Up to 3 stages it is exact, over QQ, QQ(sqrt(3)) and QQ(sqrt(15)). For 4 to 7 stages, the nodes are computed with 60
+    digits, and the coefficients are rounded to float64.
     """
     if isinstance(stages, bool) or not isinstance(stages, int) or not 1 <= stages <= MAX_ORDER // 2:
         raise InputError(f"a Gauss method has 1 to {MAX_ORDER // 2} stages here, got {stages!r}")
@@ -199,18 +187,7 @@ def gauss(stages: int) -> Tableau:
 
 
 def radau(stages: int) -> Tableau:
-    """The Radau IIA method with s stages, of order 2 s - 1, in float64; it is L-stable.
-
-    Parameters
-    ----------
-    stages : int
-        From 2 to 7.
-
-    Examples
-    --------
-    >>> radau(5).order, radau(5).residual < 1e-13, radau(5).c[-1]
-    (9, True, 1.0)
-    """
+    """The Radau IIA method with s stages, from 2 to 7, of order 2 s - 1, in float64; it is L-stable."""
     if isinstance(stages, bool) or not isinstance(stages, int) or not 2 <= stages <= MAX_ORDER // 2:
         raise InputError(f"a Radau IIA method has 2 to {MAX_ORDER // 2} stages here, got {stages!r}")
     # the nodes are 1 and the zeros of P_s - P_(s-1), divided by x - 1

@@ -181,28 +181,14 @@ TOLERATED_UNITS = 0.5  # residuals of F within this many units of round-off, eps
 @final
 @dataclass(frozen=True, slots=True)
 class Conserved:
-    """Report of a conserving step of one size; all arrays have shape (...,).
+    """Report of a conserving step of one size; all arrays have shape (...,)."""
 
-    Attributes
-    ----------
-    iterations : array of int
-        Number of iterations of Newton's method.
-    defect : array
-        The largest |F_i(step) - target_i|.
-    units : array
-        The largest |F_i(step) - target_i| in units of the round-off of F_i.
-    rank, wanted : array of int
-        The rank of chi_m, and the number of integrals that are independent on the orbit at m.
-    left : array of bool
-        Whether isotropy was not used because F does not resolve its effect: at or near an equilibrium, or for h = 0.
-    """
-
-    iterations: Values
-    defect: Values
-    units: Values
-    rank: Values
-    wanted: Values
-    left: Values
+    iterations: Values  # of Newton's method
+    defect: Values  # the largest |F_i(step) - target_i|
+    units: Values  # the same in units of the round-off of F_i
+    rank: Values  # of chi_m
+    wanted: Values  # number of integrals that are independent on the orbit at m
+    left: Values  # whether F does not resolve the effect of isotropy: at or near an equilibrium, or for h = 0
 
 
 class _Made(NamedTuple):
@@ -218,30 +204,8 @@ class _Made(NamedTuple):
 class ConservingStep(LocalStep):
     """A conserving step at one point, as a function of h, for each of which the correction is computed.
 
-    `Conserving.at` returns it.
-
-    Parameters
-    ----------
-    base : LocalStep
-    found : Conservation
-        chi_m.
-    target : array of shape (..., k), or None
-        Target value of F; None for F(m).
-    n : int or None
-        Index of the first coefficient E_n that does not vanish everywhere.
-    one_exponential, linear : bool
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> import liehom as lh
-    >>> field = lh.GeneratorField(lh.adjoint(lh.so(3)), ["-m0", "-m1/2", "-m2/4"])
-    >>> action, psi = lh.Action(field.representation), lh.steps.Generator(field, 2)
-    >>> step = lh.steps.Conserving(lh.Euler(), "m0**2 + m1**2/2 + m2**2/4")
-    >>> local = step.at(action, psi, np.array([0.6, 0.48, 0.64]), np.array([0.0]))
-    >>> report = local.conserved(np.array([0.1]))
-    >>> bool(report.defect < 1e-15), int(report.rank), bool(report.iterations < 4)
-    (True, 1, True)
+    `found` is chi_m, `target` the value at which F is to be, shape (..., k), or None for F(m), and n the index of the
+    first coefficient E_n that does not vanish everywhere, or None.
     """
 
     def __init__(

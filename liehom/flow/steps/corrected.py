@@ -589,24 +589,7 @@ class Corrected(Step):
 
 @final
 class CorrectedStep(LocalStep):
-    """A corrected step at one point, as a function of h, with its clock.
-
-    Parameters
-    ----------
-    base : LocalStep
-    correction : Correction
-    step : Corrected
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> import liehom as lh
-    >>> field = lh.GeneratorField(lh.defining(lh.so(3)), lambda m: m * [1.0, 2.0, 3.0])
-    >>> action, psi = lh.Action(field.representation), Generator(field, 2)
-    >>> local = lh.Corrected(lh.Euler(), order=3).at(action, psi, np.array([0.6, 0.0, 0.8]), 0.0)
-    >>> int(local.correction.reached), float(local.time(0.0))
-    (3, 0.0)
-    """
+    """A corrected step at one point, as a function of h, with its clock."""
 
     def __init__(self, base: LocalStep, correction: Correction, step: Corrected) -> None:
         zero = zeros(correction.residual, np.shape(correction.residual))

@@ -502,14 +502,7 @@ class OneExponential(Step, ABC):
 
 
 def step_variable(order: int, like: Values) -> Jet:
-    """The Jet h = 0 + 1 t with values of shape (1,) and numbers of the kind of `like`.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> step_variable(2, np.zeros(3)).coefficients.ravel().tolist()
-    [0.0, 1.0, 0.0]
-    """
+    """The Jet h = 0 + 1 t with values of shape (1,) and numbers of the kind of `like`."""
     zero = zeros(like, (1,))
     return Jet.from_node(Node(order, zero, [None, zero + 1, *[None] * (order - 1)][: order + 1]))
 
