@@ -25,7 +25,7 @@ from liehom.flow.methods.tableaux import tableau as tableau_of
 from liehom.flow.run.check import widest_gap
 from liehom.flow.series.arrays import is_exact, is_jax, zeros
 from liehom.flow.steps.implicit import SparseRow, combined, reach_of, solve_implicitly
-from liehom.flow.steps.step import Factors, Generator, LocalStep, OneExponential
+from liehom.flow.steps.step import Factors, Generator, LastSize, LocalStep, OneExponential
 
 
 class Coefficients(NamedTuple):
@@ -189,42 +189,28 @@ class Stages:
         self._sequential = all(j <= i for i, row in enumerate(self.numbers.a) for j, _ in row)
         self._shape = (*np.shape(m)[:-1], action.dimension)
         self._start: Values | None = None
-        self._h: Values | None = None
-        self._copy: Values | None = None
-        self._known: list[Values] = []
-
-    @property
-    def known(self) -> Sequence[Values]:
-        """The stages that have been computed for the last h."""
-        return self._known
+        self._known: LastSize[list[Values]] = LastSize(lambda h: [])
 
     def combined(self, weights: SparseRow, h: Values) -> Values:
-        """sum_i weights[i] k_i."""
-        return combined(weights, self._through(h, weights[-1][0] + 1))
+        """sum_i weights[i] k_i, by the stages that are needed."""
+        return combined(weights, self.through(h, weights[-1][0] + 1))
 
-    def _through(self, h: Values, count: int) -> list[Values]:
+    def through(self, h: Values, count: int) -> Sequence[Values]:
         """The first `count` stages; later ones are computed only if the method is implicit in all of them."""
-        if not self._is_last(h):
-            self._h, self._copy, self._known = h, h.copy() if isinstance(h, np.ndarray) else None, []
-        if not self._sequential:
-            self._known = self._known or self._solved(h)
-        while len(self._known) < count:
-            self._known.append(self._next(h))
-        return self._known
+        known = self._known(h)
+        if not self._sequential and not known:
+            known += self._solved(h)
+        while len(known) < count:
+            known.append(self._next(known, h))
+        return known
 
-    def _is_last(self, h: Values) -> bool:
-        """Whether h is the last step size; arrays are compared by value, because their owner may have changed them."""
-        if isinstance(h, np.ndarray) and isinstance(self._copy, np.ndarray):
-            return h.dtype == self._copy.dtype and np.array_equal(h, self._copy)
-        return h is self._h and self._copy is None
-
-    def _next(self, h: Values) -> Values:
+    def _next(self, known: list[Values], h: Values) -> Values:
         """The stage after the known ones, by an equation for it alone if a_ii is not zero."""
-        i = len(self._known)
+        i = len(known)
         row = self.numbers.a[i]
         if not row or row[-1][0] < i:
-            return self._stage(i, combined(row, self._known), h)
-        before, (_, diagonal) = combined(row[:-1], self._known), row[-1]
+            return self._stage(i, combined(row, known), h)
+        before, (_, diagonal) = combined(row[:-1], known), row[-1]
 
         def stage(k: Values) -> Values:
             return self._stage(i, k * diagonal if before is None else before + k * diagonal, h)

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable
 from dataclasses import dataclass
 from math import factorial, sqrt
-from typing import Any, Generic, NamedTuple, TypeVar, final
+from typing import Any, NamedTuple, final
 
 import numpy as np
 
@@ -21,30 +20,9 @@ from liehom.flow.run.check import widest_gap
 from liehom.flow.series.arrays import is_lazy, zeros
 from liehom.flow.series.jet import Jet
 from liehom.flow.steps.implicit import DIFFERENCE, NOT_ON_JETS, Equation, SparseRow, Stage, combined
-from liehom.flow.steps.step import Factors, Generator, LocalStep, OneExponential
+from liehom.flow.steps.step import Factors, Generator, LastSize, LocalStep, OneExponential
 
 # Linearization: u' = f(u, s) in the algebra at a point, with f(u, s) = dexp^-1_u psi(Exp(u) m, t + s).
-
-Result = TypeVar("Result")
-
-
-@final
-class LastSize(Generic[Result]):
-    """A function of the step size that keeps its last result."""
-
-    def __init__(self, compute: Callable[[Values], Result]) -> None:
-        self._compute = compute
-        self._h: Any = None
-        self._last: list[Result] = []
-
-    def __call__(self, h: Values) -> Result:
-        """The result for the size h; arrays are compared by value, because their owner may have changed them."""
-        arrays = isinstance(h, np.ndarray) and isinstance(self._h, np.ndarray)
-        same = h is self._h if not arrays else h.dtype == self._h.dtype and np.array_equal(h, self._h)
-        if not (same and self._last):
-            self._last = [self._compute(h)]
-            self._h = h.copy() if isinstance(h, np.ndarray) else h
-        return self._last[0]
 
 
 @final
@@ -165,8 +143,8 @@ class StiffStep(LocalStep):
         stages = self._stages
         if self._linear is None:
             self._linear = Linearization(stages.action, stages.psi, stages.m, stages.t, min(stages.method.terms, 2))
-        stages.combined(stages.numbers.b, h)
-        difference: Any = combined(self._weights, stages.known)
+        known = stages.through(h, max(i for i, _ in (*stages.numbers.b, *self._weights)) + 1)
+        difference: Any = combined(self._weights, known)
         if self._at_start:
             difference = difference + self._gamma * h * self._linear.start
         return stages.action.infinitesimal(self._linear.solve(self._gamma * h, difference), stages.m)

@@ -31,6 +31,7 @@ from liehom.flow.steps.expansion import Flow, flow_series
 from liehom.flow.steps.step import (
     SERIES_FRACTION,
     Generator,
+    LastSize,
     LocalStep,
     Step,
     StepLimits,
@@ -288,7 +289,7 @@ class InvariantSeries(TaylorSeries):
     def __init__(self, far: LandedSeries, landing: InvariantLanding, start: Values | None) -> None:
         super().__init__(far.action, far.m, far.trajectory)
         self._far, self._landing = far, landing
-        self._latest: tuple[Values, Values, Values | BooleanArray] | None = None
+        self._landed = LastSize(self._at)
         if isinstance(self.m, Traced):
             tape = self.m.tape
             self._numbers: Sequence[Values] = [Traced(tape, tape.trajectory_constant(f)) for f in landing.functions()]
@@ -307,11 +308,9 @@ class InvariantSeries(TaylorSeries):
         near = self._landed(h)[1]
         return True if isinstance(near, np.ndarray | np.bool_) else near
 
-    def _landed(self, h: Values) -> tuple[Values, Values | BooleanArray]:
-        if self._latest is None or self._latest[0] is not h:
-            steps = 1 if len(self.trajectory) >= SHARP_ORDER else 2
-            self._latest = h, *self._landing.landed(self.series(h), self._numbers, steps)
-        return self._latest[1:]
+    def _at(self, h: Values) -> tuple[Values, Values | BooleanArray]:
+        """The point after a step of size h, and whether it is that of the orbit."""
+        return self._landing.landed(self.series(h), self._numbers, 1 if len(self.trajectory) >= SHARP_ORDER else 2)
 
 
 def _flow(field: GeneratorField, m: Values, order: int, t: Values) -> Flow | AffineFlow:

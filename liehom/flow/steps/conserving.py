@@ -30,6 +30,7 @@ from liehom.flow.steps.step import (
     ExponentialLike,
     Factors,
     Generator,
+    LastSize,
     LocalStep,
     Step,
     StepLike,
@@ -192,9 +193,8 @@ class Conserved:
 
 
 class _Made(NamedTuple):
-    """The step of size h: its isotropy, its point and the report."""
+    """The step of one size: its isotropy, its point and the report."""
 
-    h: Values
     zeta: Values | None
     point: Values
     record: Conserved
@@ -224,7 +224,7 @@ class ConservingStep(LocalStep):
         self._target = found.value if target is None else target
         self._one, self._linear = one_exponential, linear
         self._unit = TOLERATED_UNITS * float(np.finfo(found.m.dtype).eps) * found.scale
-        self._last: _Made | None = None
+        self._made = LastSize(self._corrected)
         self._sigma: Any = None
 
     @property
@@ -304,18 +304,6 @@ class ConservingStep(LocalStep):
                 self._sigma = self._removing(along, z, self.n)
         return self._sigma
 
-    def _made(self, h: Values) -> _Made:
-        if isinstance(h, Traced):
-            if self._last is None or self._last.h is not h:
-                made = self._last = self._corrected(h)
-                onto: Any = made.record.left | (made.record.rank >= made.record.wanted)
-                h.tape.required.append(Traced(h.tape, onto).entry)
-            return self._last
-        last, h = self._last, np.asarray(h)
-        if last is None or h.shape != last.h.shape or h.dtype != last.h.dtype or not (h == last.h).all():
-            last = self._last = self._corrected(h.copy())
-        return last
-
     def _corrected(self, h: Values) -> _Made:
         found, action, m = self.found, self.found.action, self.found.m
         xi = self.base.factors(h)[0] if self._one else None
@@ -348,7 +336,10 @@ class ConservingStep(LocalStep):
         rank, wanted = found.rank, found.wanted
         alone = (resolved < rank) | ~found.moving | (wanted == 0)
         record = Conserved(iterations, defect.max(axis=-1), units, rank, wanted, alone)
-        return _Made(h, x, z if x is None else moved(x), record)
+        if isinstance(h, Traced):
+            onto: Any = alone | (rank >= wanted)
+            h.tape.required.append(Traced(h.tape, onto).entry)
+        return _Made(x, z if x is None else moved(x), record)
 
     def _removing(self, along: Jet, z: Jet, k: int) -> Values:
         """The zeta in V_m with chi_m(zeta) = -[t^k] F along the step z."""

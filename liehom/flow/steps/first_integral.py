@@ -587,7 +587,7 @@ class MomentumMap:
     -----
     J is linear on coadjoint orbits, J(m) = m restricted to h, and quadratic on V: J(m)(eta) = Omega(rho(eta) m, m) / 2.
     It is equivariant. An instance is a function of m, with values of shape (..., dim h), on arrays, Jets and tracers.
-    `Conserving` takes it as an integral. `component` gives one of its components.
+    `Conserving` takes it as an integral.
 
     Examples
     --------
@@ -640,33 +640,8 @@ class MomentumMap:
         parts: Any = self._quadratic
         return np.stack([np.sum(m * (m @ part), axis=-1) for part in parts], axis=-1)
 
-    def component(self, eta: ArrayLike) -> _Component:
-        """The function m -> J(m)(eta), of shape (...,), for the coefficients of eta in the basis of h.
-
-        Examples
-        --------
-        >>> import liehom as lh
-        >>> J = MomentumMap(lh.coadjoint(lh.so(3)))
-        >>> float(J.component([0, 0, 1])(np.array([1.0, 2.0, 3.0])))
-        3.0
-        """
-        weights = np.asarray(eta, dtype=float)
-        if weights.shape != (self.dimension,):
-            raise ShapeError(f"eta has shape {weights.shape}, expected ({self.dimension},)")
-        return _Component(self, weights)
-
     def __repr__(self) -> str:
         return f"<momentum map of an algebra of dimension {self.dimension} on {displayed(self.representation)}>"
-
-
-class _Component:
-    """A component of a momentum map."""
-
-    def __init__(self, momentum: MomentumMap, weights: Array) -> None:
-        self.momentum, self.weights = momentum, weights
-
-    def __call__(self, m: Values) -> Values:
-        return self.momentum(m) @ self.weights
 
 
 def _quadratic(matrices: Array, form: Array) -> Array:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Hashable, Sequence
 from copy import copy
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias, cast, final
+from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeAlias, TypeVar, cast, final
 
 import numpy as np
 import numpy.typing as npt
@@ -250,6 +250,28 @@ class LocalStep:
     def is_near_cone(self, h: Values) -> BooleanArray:
         """Whether the points at which the equations of the step fail are within two steps of size h (...,)."""
         return np.zeros(np.shape(h), dtype=bool)
+
+
+Result = TypeVar("Result")
+
+
+@final
+class LastSize(Generic[Result]):
+    """A function of the step size that keeps its last result."""
+
+    def __init__(self, compute: Callable[[Values], Result]) -> None:
+        self._compute = compute
+        self._h: Any = None
+        self._last: list[Result] = []
+
+    def __call__(self, h: Values) -> Result:
+        """The result for the size h; arrays are compared by value, because their owner may have changed them."""
+        arrays = isinstance(h, np.ndarray) and isinstance(self._h, np.ndarray)
+        same = h is self._h if not arrays else h.dtype == self._h.dtype and np.array_equal(h, self._h)
+        if not (same and self._last):
+            self._last = [self._compute(h)]
+            self._h = h.copy() if isinstance(h, np.ndarray) else h
+        return self._last[0]
 
 
 def polynomial(coefficients: Sequence[Term], h: Values) -> Term:

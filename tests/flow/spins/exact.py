@@ -2,8 +2,8 @@
 
     m' = -g m x H - a g m x (m x H),   g = gamma/(1 + a^2)
 
-With p = <m, H>/|H| and u = a g |H| t, the component along the field is tanh(artanh(p) + u). The component across it turns
-by the angle g |H| t and has the length 1/cosh(artanh(p) + u).
+With p = <m, H>/|H| and u = a g |H| t, the component along the field is tanh(artanh(p) + u). The component across it
+turns by the angle g |H| t and has the length 1/cosh(artanh(p) + u).
 """
 
 from typing import Any

@@ -34,7 +34,6 @@ SIGMA_I = R - H
 SIGMA_IB = (E2 * R - E3) / 4
 SIGMA_IO = (3 * V2 + 3 * H**2 - 2 * E1 * H + E2) * SIGMA_I / 4
 SIGMA_SY4_IB = D * (3 * E1 * H**2 - 2 * E2 * H + E3 - 3 * H * K) / (24 * V2)
-NAMED = {"h": H, "R": R, "D": D, "q": D / V2, "v2": V2, "e1": E1, "e2": E2, "e3": E3}
 
 
 class PaperSy4(OneExponential):
@@ -129,20 +128,6 @@ def test_the_heun_step_needs_no_isotropy_at_order_three() -> None:
     for kind in "bo":
         result = body(kind, lh.Heun(), 3)
         assert result.residual_is_zero and result.zeta == {} and result.clock[3] != 0
-
-
-def test_named_functions() -> None:
-    h, r, d, e2, e3 = sympy.symbols("h R D e2 e3")
-    assert body("o", lh.Euler(), 2).in_terms_of(NAMED) == r - h
-    assert body("b", lh.Heun(), 4).in_terms_of(NAMED) == e2 * r / 4 - e3 / 4
-    assert sympy.expand(body("o", PaperSy4(), 5).in_terms_of(NAMED) + d * (r - h) / 8) == 0
-    io = body("o", lh.Heun(), 4)
-    result = io.in_terms_of(NAMED)
-    assert io.equal(result.subs({sympy.Symbol(k): v for k, v in NAMED.items()}), SIGMA_IO)
-    with pytest.raises(InputError, match="not a polynomial of degree 3"):
-        io.in_terms_of({"h": H})
-    with pytest.raises(InputError, match="there is no clock with index 7"):
-        io.in_terms_of(NAMED, "clock 7")
 
 
 def test_axisymmetric_bodies_need_no_correction_of_order_four() -> None:
