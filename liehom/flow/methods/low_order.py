@@ -322,10 +322,7 @@ class CrouchGrossman3(ProductStep):
     """
 
     order = 3
-
-    @property
-    def scheme(self) -> Scheme:
-        return CROUCH_GROSSMAN_3
+    scheme = Scheme(((0, "3/4"), (0, "119/216; 0 17/108"), (0, "13/51; 0 -2/3; 0 0 24/17")))
 
 
 @final
@@ -348,14 +345,7 @@ class CommutatorFree4(ProductStep):
     """
 
     order = 4
-
-    @property
-    def scheme(self) -> Scheme:
-        return COMMUTATOR_FREE_4
-
-
-CROUCH_GROSSMAN_3 = Scheme(((0, "3/4"), (0, "119/216; 0 17/108"), (0, "13/51; 0 -2/3; 0 0 24/17")))
-COMMUTATOR_FREE_4 = Scheme(((0, "1/2"), (0, "0 1/2"), (1, "-1/2 0 1"), (0, "1/4 1/6 1/6 -1/12; -1/12 1/6 1/6 1/4")))
+    scheme = Scheme(((0, "1/2"), (0, "0 1/2"), (1, "-1/2 0 1"), (0, "1/4 1/6 1/6 -1/12; -1/12 1/6 1/6 1/4")))
 
 
 def check_exponential(action: Action, order: int) -> None:

@@ -261,7 +261,7 @@ def _newton_iterated(
             against = active & ~free & ((step * residual).sum(axis=axes, keepdims=True) <= 0)
             against = against & (_norm(step, axes) > GUIDED * reach)
             if bool(against.any()):
-                damping = np.where(against, np.maximum(4 * damping, system.size()), damping)
+                damping = np.where(against, np.maximum(4 * damping, system.size), damping)
                 step = system.solve(residual, damping)
         length = _norm(step, axes)
         limited = length > reach
@@ -273,11 +273,11 @@ def _newton_iterated(
         largest = np.abs(trial).max(axis=axes, keepdims=True, initial=0.0)
         small = change <= 1e4 * eps * np.maximum(largest, 1.0)  # the residual may be round-off
         good = active & ((new <= MAX_GROWTH * size) | (small & np.isfinite(new)))
-        exact = new <= eps * system.size() * largest  # the round-off of F
+        exact = new <= eps * system.size * largest  # the round-off of F
         done = (change <= 2 * eps * largest) | (small & ((change >= before / 2) | exact))
         done = good & done & (damping == 0) & ~limited
         ratio = np.where(good, new / np.where(size > 0, size, 1.0), np.inf)
-        damping = np.where(good, damping * np.minimum(ratio, 1.0), np.maximum(4 * damping, system.size()))
+        damping = np.where(good, damping * np.minimum(ratio, 1.0), np.maximum(4 * damping, system.size))
         crawls = good & ~free & (damping > 0) & (ratio > 0.5) & (length < CRAWLS * reach)
         free = free | crawls
         damping = np.where((damping < 1e-3) | small | crawls, 0.0, damping)
@@ -297,7 +297,7 @@ class _System:
         self.equation, self.axes, self.at = equation, axes, x
         self.dense = len(axes) == 2 and x.shape[0] * x.shape[-1] <= MAX_DENSE
         self.jacobian: Array = np.zeros(())
-        self._size: Array = np.zeros(np.shape(wanted))
+        self.size: Array = np.zeros(np.shape(wanted))  # a norm of F', at least 1, shape (1, ..., 1)
 
     def refresh(self, x: Array, stale: BooleanArray) -> None:
         """Evaluate the derivative at x for the trajectories for which it is `stale`."""
@@ -306,7 +306,7 @@ class _System:
         if not self.dense:
             self.at = np.where(stale, x, self.at)
             moved: Any = self.equation.along(self.at, _unit(x, self.axes))
-            self._size = np.maximum(1.0, _norm(moved, self.axes))
+            self.size = np.maximum(1.0, _norm(moved, self.axes))
             return
         blocks = np.where(stale[..., None], self.equation.blocks(x), 0.0)
         s, n = x.shape[0], x.shape[-1]
@@ -314,29 +314,21 @@ class _System:
         derivative = np.einsum("i...ab,ij->...iajb", blocks, self.equation.matrix)
         derivative = derivative.reshape(*x.shape[1:-1], s * n, s * n)
         self.jacobian = np.where(stale.reshape(*x.shape[1:-1], 1, 1), derivative, self.jacobian)
-        self._size = np.maximum(1.0, np.sqrt((self.jacobian**2).sum(axis=(-1, -2)))).reshape(np.shape(stale))
-
-    def _along(self, v: Array) -> Array:
-        moved: Any = self.equation.along(self.at, v)
-        return moved
+        self.size = np.maximum(1.0, np.sqrt((self.jacobian**2).sum(axis=(-1, -2)))).reshape(np.shape(stale))
 
     def repels(self) -> BooleanArray:
         """Whether F' has a real eigenvalue above 1, bool (1, ..., 1); False for large systems (not computed)."""
         if not self.dense:
-            return np.zeros(np.shape(self._size), dtype=bool)
+            return np.zeros(np.shape(self.size), dtype=bool)
         jacobian = np.where(np.isfinite(self.jacobian), self.jacobian, 0.0).astype(np.float64, copy=False)
         values: Any = np.linalg.eigvals(jacobian)
-        return ((values.imag == 0) & (values.real > 1)).any(axis=-1).reshape(np.shape(self._size))
-
-    def size(self) -> Array:
-        """A norm of F', at least 1, shape (1, ..., 1)."""
-        return self._size
+        return ((values.imag == 0) & (values.real > 1)).any(axis=-1).reshape(np.shape(self.size))
 
     def solve(self, residual: Array, damping: Array) -> Array:
         """The steps, of the shape of the residual; 0 where the residual is not finite."""
         right = np.where(np.isfinite(residual).all(axis=self.axes, keepdims=True), residual, 0.0)
         if not self.dense:
-            return gmres(lambda v: v * (1 + damping) - self._along(v), right, self.axes)
+            return gmres(lambda v: v * (1 + damping) - self.equation.along(self.at, v), right, self.axes)
         s, *lead, n = residual.shape
         flat = np.moveaxis(right, 0, -2).reshape(*lead, s * n, 1)
         unit = np.eye(s * n, dtype=right.dtype)
