@@ -21,6 +21,7 @@ from liehom.flow.action.maps import (
     action_map,
     bracket_map,
     cayley_logarithm,
+    connected,
     expm1,
     identity,
     matrices_of,
@@ -757,43 +758,22 @@ class BlockExponential(TrueExponential):
 def blocks_of(representation: Representation) -> list[Blocks] | None:
     """The blocks of a representation, if there are several coordinates sets and a closed form holds on each of them."""
     entries = action_entries(representation)
-    roots = _components(entries, representation.size)
-    moved = {j for _, j, _, _ in entries} | {i for _, _, i, _ in entries}
-    if len({roots[i] for i in range(representation.size)}) < 2 or not moved:
+    classes = connected(((i, j) for _, j, i, _ in entries), representation.size)
+    moved = {i for _, *both, _ in entries for i in both}
+    if len(classes) < 2 or not moved or max(map(len, classes)) > MAX_BLOCK:
         return None
-    members: dict[int, list[int]] = {}
-    for i in sorted(moved):
-        members.setdefault(roots[i], []).append(i)
-    if max(map(len, members.values())) > MAX_BLOCK:
-        return None
-    parts: dict[int, list[tuple[int, int, int, Scalar]]] = {root: [] for root in members}
+    block_of = {i: k for k, coordinates in enumerate(classes) for i in coordinates}
+    parts: list[list[tuple[int, int, int, Scalar]]] = [[] for _ in classes]
     for entry in entries:
-        parts[roots[entry[1]]].append(entry)
-    return _grouped(parts, members, representation.field)
+        parts[block_of[entry[1]]].append(entry)
+    return _grouped([(x, y) for x, y in zip(parts, classes, strict=True) if x], representation.field)
 
 
-def _components(entries: Entries, size: int) -> list[int]:
-    """A representative of the set of coordinates that each coordinate is coupled to."""
-    parent = list(range(size))
-
-    def root(i: int) -> int:
-        while parent[i] != i:
-            parent[i] = parent[parent[i]]
-            i = parent[i]
-        return i
-
-    for _, j, i, _ in entries:
-        parent[root(j)] = root(i)
-    return [root(i) for i in range(size)]
-
-
-def _grouped(
-    parts: dict[int, list[tuple[int, int, int, Scalar]]], members: dict[int, list[int]], field: Field
-) -> list[Blocks] | None:
+def _grouped(parts: list[tuple[list[tuple[int, int, int, Scalar]], list[int]]], field: Field) -> list[Blocks] | None:
     """Blocks with equal matrices put together; None if one of them has no closed form."""
     kinds: list[tuple[list[Any], list[list[int]], list[list[int]]]] = []
-    for root, entries in parts.items():
-        generators, coordinates = sorted({a for a, *_ in entries}), members[root]
+    for entries, coordinates in parts:
+        generators = sorted({a for a, *_ in entries})
         number, place = {a: k for k, a in enumerate(generators)}, {i: k for k, i in enumerate(coordinates)}
         own = sorted(((number[a], place[j], place[i], v) for a, j, i, v in entries), key=lambda entry: entry[:3])
         kind = next((x for x in kinds if x[0] == own and len(x[2][0]) == len(coordinates)), None)

@@ -331,6 +331,24 @@ def action_entries(representation: Representation) -> list[tuple[int, int, int, 
     ]
 
 
+def connected(pairs: Iterable[Iterable[int]], size: int) -> list[list[int]]:
+    """The classes of the numbers below a size that pairs connect, each in ascending order, by their least elements."""
+    parent = list(range(size))
+
+    def root(i: int) -> int:
+        while parent[i] != i:
+            parent[i] = parent[parent[i]]
+            i = parent[i]
+        return i
+
+    for i, j in pairs:
+        parent[root(i)] = root(j)
+    classes: dict[int, list[int]] = {}
+    for i in range(size):
+        classes.setdefault(root(i), []).append(i)
+    return list(classes.values())
+
+
 def bracket_map(representation: Representation) -> FieldMap:
     """The bilinear map (x, y) -> [x, y] on coefficient vectors."""
     constants = representation.algebra.structure_constants()

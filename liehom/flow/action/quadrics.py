@@ -17,7 +17,7 @@ from liehom.flow.action.invariants import (
     monomials,
     times,
 )
-from liehom.flow.action.maps import matrices_of
+from liehom.flow.action.maps import connected, matrices_of
 from liehom.flow.action.space import Action
 from liehom.flow.door import Representation
 from liehom.flow.series.arrays import namespace
@@ -115,7 +115,8 @@ def quadric_orbits(representation: Representation, dimension: int | IntegerArray
     """The `Quadrics` in whose level sets the orbits of points are open, or None if there are none."""
     matrices = matrices_of(representation)
     moving = np.abs(matrices).max(axis=(0, 2), initial=0.0) > 0  # the other coordinates are constant
-    parts = _components(matrices, moving)
+    linked = np.argwhere((np.abs(matrices).max(axis=0, initial=0.0) > 0) & moving & moving[:, None])
+    parts = [part for part in connected(linked.tolist(), len(moving)) if moving[part[0]]]
     dimensions = np.unique(np.asarray(dimension))
     if len(dimensions) != 1:
         return None
@@ -125,21 +126,6 @@ def quadric_orbits(representation: Representation, dimension: int | IntegerArray
     blocks = tuple(block for part in parts if (block := _with_form(matrices, part)) is not None) if missing else ()
     smooth = len(blocks) == missing and _are_smooth(blocks, np.asarray(points, dtype=float))
     return Quadrics(representation.size, blocks) if smooth else None
-
-
-def _components(matrices: Array, moving: Array) -> list[list[int]]:
-    """The blocks of the moving coordinates: the connected components of the graph of non-zero entries."""
-    linked = (np.abs(matrices).max(axis=0, initial=0.0) > 0) | np.eye(len(moving), dtype=bool)
-    linked = (linked | linked.T) & moving & moving[:, None]
-    rest, blocks = set(np.flatnonzero(moving).tolist()), []
-    while rest:
-        block, new = set(), {min(rest)}
-        while new:
-            block |= new
-            new = set(np.flatnonzero(linked[sorted(new)].any(axis=0)).tolist()) - block
-        rest -= block
-        blocks.append(sorted(block))
-    return blocks
 
 
 def _with_form(matrices: Array, indices: list[int]) -> Block | None:

@@ -39,6 +39,10 @@ class Action:
         (x, m) -> rho(x) m.
     bracket : function
         (x, y) -> [x, y], as steps of order 3 and more need it.
+    max_norm : float
+        The largest Frobenius norm of rho(x) for x in an orthonormal basis of g.
+    tight_frame : TightFrame or None
+        The data of orbits on which all singular values agree; see `with_tight_frame`.
 
     Examples
     --------
@@ -53,15 +57,9 @@ class Action:
     representation: Representation
 
     __slots__ = (
-        "_basis",
-        "_size",  # behind `max_norm`
-        "bracket",
-        "even",  # behind `tight_frame`
-        "exponential",
-        "infinitesimal",
-        "inner_product",
-        "representation",
-    )
+        "_basis", "bracket", "exponential", "infinitesimal", "inner_product", "max_norm", "representation",
+        "tight_frame",
+    )  # fmt: skip
 
     def __init__(self, representation: Representation, exponential: ExponentialLike = "exp") -> None:
         if not isinstance(representation, Representation):
@@ -72,30 +70,20 @@ class Action:
         self.bracket: FieldMap = bracket_map(representation)
         self.inner_product: InnerProduct = inner_product(representation)
         self._basis = self.inner_product.orthonormal_basis()
-        self.even: TightFrame | None = None
-        self._size: float
+        self.tight_frame: TightFrame | None = None
+        self.max_norm: float
         copies = copies_of(representation)
         if copies is not None:
-            self._size = Action(copies.single).max_norm
+            self.max_norm = Action(copies.single).max_norm
             return
         shape = (representation.algebra.dimension, representation.size**2)
         tensor = matrices_of(representation).reshape(shape)
-        self._size = float(np.linalg.norm(self._basis.T @ tensor, axis=1).max(initial=0.0))
-
-    @property
-    def tight_frame(self) -> TightFrame | None:
-        """The data of orbits on which all singular values agree, or None; see `with_tight_frame`."""
-        return self.even
+        self.max_norm = float(np.linalg.norm(self._basis.T @ tensor, axis=1).max(initial=0.0))
 
     @property
     def dimension(self) -> int:
         """Dimension of the algebra."""
         return self.infinitesimal.shape[0]
-
-    @property
-    def max_norm(self) -> float:
-        """The largest Frobenius norm of rho(x) for x in an orthonormal basis of g."""
-        return self._size
 
     @overload
     def act(self, x: Jet, m: ValuesLike) -> Jet: ...
@@ -128,8 +116,8 @@ class Action:
         >>> lh.Action(lh.defining(lh.so(3))).isotropy_frame(np.array([0, 0, 1.0]), 2).basis.shape
         (3, 1)
         """
-        if self.even is not None and not is_jax(m):
-            return self._frame_of_tight(self.even, m, orbit_dimension)
+        if self.tight_frame is not None and not is_jax(m):
+            return self._frame_of_tight(self.tight_frame, m, orbit_dimension)
         if type(m) is Traced:
             return self._branch_free_frame(m, int(np.max(orbit_dimension)))
         xp = namespace(m)
@@ -157,7 +145,7 @@ class Action:
         Its isotropy frames have no basis of g_m, and the standard basis of V in place of a tangent basis.
         """
         action = copy(self)
-        action.even = frame
+        action.tight_frame = frame
         return action
 
     def _frame_of_tight(self, tight: TightFrame, m: Values, orbit_dimension: int | IntegerArray) -> IsotropyFrame:

@@ -26,6 +26,7 @@ from liehom.flow.steps.first_integral import (
     conditioning,
 )
 from liehom.flow.steps.step import (
+    Derived,
     Diagnostics,
     ExponentialLike,
     Factors,
@@ -514,7 +515,7 @@ TIME_SHIFT = 0.01
 
 
 @final
-class Conserving(Step):
+class Conserving(Derived):
     """A step that adds t^(n-1) sigma, sigma in g_m, to its generator, so that first integrals keep their values.
 
     Parameters
@@ -587,10 +588,6 @@ class Conserving(Step):
         return self.step.order
 
     @property
-    def one_exponential(self) -> bool:
-        return self.step.one_exponential
-
-    @property
     def base_order(self) -> int:
         """`base_order` of the base, an int."""
         return self.step.base_order
@@ -606,7 +603,7 @@ class Conserving(Step):
 
     @property
     def trace_key(self) -> Hashable:
-        return self.kept_order, self.step.trace_key
+        return self.kept_order, super().trace_key
 
     def prepare(self, action: Action, psi: Generator, m: Values, t: Values) -> Conserving:
         """The step with the checked first integrals, their target values, and n, for a run from m at times t."""

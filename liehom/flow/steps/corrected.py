@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable
 from dataclasses import dataclass, field
 from functools import cached_property
 from types import ModuleType
@@ -19,6 +18,7 @@ from liehom.flow.series.arrays import as_values, is_exact, is_jax, is_lazy, name
 from liehom.flow.steps.expansion import ROUND_OFF_UNITS, Clock, Flow, at_rest, flow_series, leading_order, vanishing
 from liehom.flow.steps.range_solver import RangeSolver, TightFrameSolver
 from liehom.flow.steps.step import (
+    Derived,
     Diagnostics,
     ExponentialLike,
     Factors,
@@ -488,7 +488,7 @@ def correct(recursion: OrderRecursion, base_order: int, order: int) -> Correctio
 
 
 @final
-class Corrected(Step):
+class Corrected(Derived):
     """A step corrected along the isotropy of each point, so that it captures orbits to order n.
 
     Parameters
@@ -542,23 +542,11 @@ class Corrected(Step):
         return self._order
 
     @property
-    def one_exponential(self) -> bool:
-        return self.step.one_exponential
-
-    @property
     def base_order(self) -> int:
         """Order of the base, an int."""
         return self.step.order
 
     uses_isotropy = True
-
-    @property
-    def prepares_by_psi(self) -> bool:
-        return self.step.prepares_by_psi
-
-    @property
-    def trace_key(self) -> Hashable:
-        return self.step.trace_key
 
     def prepare(self, action: Action, psi: Generator, m: Values, t: Values) -> Corrected:
         base = self.step.with_exponential_of(action).prepare(action, psi, m, t)

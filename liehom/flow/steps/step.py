@@ -495,6 +495,24 @@ def as_step(step: StepLike) -> Step:
     return cast(Step, provider("step by name")(step))
 
 
+class Derived(Step, ABC):
+    """A step that changes another one, `step`, with the properties that it has from it."""
+
+    step: Step
+
+    @property
+    def one_exponential(self) -> bool:
+        return self.step.one_exponential
+
+    @property
+    def prepares_by_psi(self) -> bool:
+        return self.step.prepares_by_psi
+
+    @property
+    def trace_key(self) -> Hashable:
+        return self.step.trace_key
+
+
 class OneExponential(Step, ABC):
     """A step with one exponential: `generator` in place of `factors`.
 
