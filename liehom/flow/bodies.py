@@ -25,8 +25,6 @@ from liehom.flow.propagation.integration import integrate
 from liehom.flow.run.solution import Solution
 from liehom.flow.steps.step import StepLike
 
-# Inertia tensors as users give them, read as matrices over QQ, and rotations, checked.
-
 SYMMETRY_RTOL = 1e-10
 """Largest difference of I[i, j] and I[j, i], relative to the largest entry."""
 ROTATION_ATOL = 1e-8
@@ -225,15 +223,7 @@ class PosedBody(Body):
         return self.state(y).velocity
 
     def energy(self, y: npt.ArrayLike | Values | Solution) -> Values:
-        """Kinetic energy, plus the potential if there is one; shape (...,).
-
-        Examples
-        --------
-        >>> import liehom as lh
-        >>> body = lh.bodies.AttitudeBody([1, 2, 4])
-        >>> body.energy(body.start(momentum=[0.0, 2.0, 0.0]))
-        np.float64(1.0)
-        """
+        """Kinetic energy, plus the potential if there is one; shape (...,)."""
         state = self.state(y)
         kinetic = np.sum(state.momentum * state.velocity, axis=-1) / 2
         return kinetic if self._potential is None else kinetic + self._potential(state)
@@ -491,13 +481,7 @@ class HeavyTop(Body):
         *,
         attitude: npt.ArrayLike | None = None,
     ) -> Array:
-        """States (..., 6) with an angular momentum in the body and the vertical, or the attitude that determines it.
-
-        Examples
-        --------
-        >>> HeavyTop([1, 1, 2], [0, 0, 1]).start([0, 0, 1.0]).tolist()
-        [0.0, 0.0, 1.0, 0.0, 0.0, 1.0]
-        """
+        """States (..., 6) with an angular momentum in the body and the vertical, or the attitude that determines it."""
         m = np.asarray(momentum, dtype=float)
         up = np.asarray(vertical, dtype=float) if attitude is None else rotations(attitude)[..., 2, :]
         if m.shape[-1:] != (3,) or up.shape[-1:] != (3,):
@@ -517,13 +501,7 @@ class HeavyTop(Body):
         return self._inverse(self.momentum(y))
 
     def energy(self, y: npt.ArrayLike | Values | Solution) -> Values:
-        """<m, Om m>/2 + w <Gamma, chi>, shape (...,).
-
-        Examples
-        --------
-        >>> HeavyTop([1, 1, 2], [0, 0, 3]).energy([0, 2.0, 0, 0, 0, 1.0])
-        np.float64(5.0)
-        """
+        """<m, Om m>/2 + w <Gamma, chi>, shape (...,)."""
         y = self.points(y)
         m = y[..., :3]
         return np.sum(m * self._inverse(m), axis=-1) / 2 + np.sum(y[..., 3:] * (self.weight * self.centre), axis=-1)
@@ -705,14 +683,7 @@ class SE3Body(PosedBody):
         return self.state(y).position
 
     def pose(self, y: npt.ArrayLike | Solution) -> Array:
-        """Homogeneous matrices (..., 4, 4) of the pose.
-
-        Examples
-        --------
-        >>> body = SE3Body([1, 1, 1])
-        >>> body.pose(body.start(position=[1.0, 2, 3], momentum=np.zeros(6)))[:, 3].tolist()
-        [1.0, 2.0, 3.0, 1.0]
-        """
+        """Homogeneous matrices (..., 4, 4) of the pose."""
         state = self.state(y)
         pose = np.zeros((*state.position.shape[:-1], 4, 4))
         pose[..., :3, :3], pose[..., :3, 3], pose[..., 3, 3] = state.attitude, state.position, 1.0

@@ -147,13 +147,7 @@ class SpinLattice:
 
     @property
     def bonds(self) -> int:
-        """Number of pairs of neighbours.
-
-        Examples
-        --------
-        >>> SpinLattice((3, 4)).bonds, SpinLattice((3, 4), False).bonds
-        (24, 17)
-        """
+        """Number of pairs of neighbours."""
         closed = self.periodic if isinstance(self.periodic, tuple) else ()
         return sum((n if p else n - 1) * self.count // n for n, p in zip(self.shape, closed, strict=True))
 
@@ -167,15 +161,7 @@ class SpinLattice:
         return total
 
     def difference(self, m: Values, axis: int) -> Any:
-        """m_{i + 1} - m_{i - 1} along an axis of the lattice; beyond an open end a spin is 0.
-
-        Examples
-        --------
-        >>> import numpy as np
-        >>> m = np.array([1.0, 2.0, 4.0])[:, None] * [0.0, 0.0, 1.0]
-        >>> SpinLattice((3,), False).difference(m, 0)[:, 2].tolist()
-        [2.0, 3.0, -2.0]
-        """
+        """m_{i + 1} - m_{i - 1} along an axis of the lattice; beyond an open end a spin is 0."""
         before, after = self._neighbours(m, axis)
         return after - before
 
@@ -193,16 +179,7 @@ class SpinLattice:
         return np.sum(x, axis=tuple(range(-len(self.shape), 0))) if self.shape else x
 
     def check(self, m: npt.ArrayLike | Values) -> None:
-        """Raise ShapeError unless m has the shape (..., *shape, 3).
-
-        Examples
-        --------
-        >>> import numpy as np
-        >>> SpinLattice((4,)).check(np.zeros((3, 3)))
-        Traceback (most recent call last):
-        ...
-        liehom.base.errors.ShapeError: spins of shape (3, 3), expected (..., 4, 3)
-        """
+        """Raise ShapeError unless m has the shape (..., *shape, 3)."""
         own = (*self.shape, 3)
         if tuple(np.shape(m)[-len(own) :]) != own:
             raise ShapeError(f"spins of shape {np.shape(m)}, expected (..., {', '.join(map(str, own))})")
@@ -337,14 +314,7 @@ class JointSpins:
         return spins.reshape((*spins.shape[: len(spins.shape) - 1 - len(self.lattice.shape)], 3 * self.lattice.count))
 
     def spins(self, point: npt.ArrayLike | Values) -> Any:
-        """Spins (..., *shape, 3) of points (..., 3n), arrays or Jets.
-
-        Examples
-        --------
-        >>> from liehom.studies.instances import LandauLifshitz
-        >>> LandauLifshitz((3, 4)).joint().spins([0.0] * 36).shape
-        (3, 4, 3)
-        """
+        """Spins (..., *shape, 3) of points (..., 3n), arrays or Jets."""
         joint: Any = point if hasattr(point, "shape") else np.asarray(point, dtype=float)
         return joint.reshape((*joint.shape[:-1], *self.lattice.shape, 3))
 
@@ -525,13 +495,7 @@ class LandauLifshitz:
         return h + self._coupling(spins) if self.coupled else h
 
     def generator(self, m: npt.ArrayLike | Values, t: Real = 0.0) -> Any:
-        """psi = gamma/(1 + alpha^2) (h + alpha m x h), with m' = psi x m; shape (..., *shape, 3).
-
-        Examples
-        --------
-        >>> LandauLifshitz(applied=[0.0, 0.0, 2.0], damping=0.5).generator([1.0, 0.0, 0.0]).tolist()
-        [0.0, -0.8, 1.6]
-        """
+        """psi = gamma/(1 + alpha^2) (h + alpha m x h), with m' = psi x m; shape (..., *shape, 3)."""
         spins = self._spins(m)
         h = self.effective_field(spins, t)
         if self.spin_torque:
@@ -571,13 +535,7 @@ class LandauLifshitz:
         return self.lattice.total(density)
 
     def energy_rate(self, m: npt.ArrayLike | Values, time: Real = 0.0) -> Any:
-        """dE/dt = -gamma sum_i alpha/(1 + alpha^2) |m_i x h_i|^2 in a constant field without spin torque and noise.
-
-        Examples
-        --------
-        >>> LandauLifshitz(applied=[0, 0, 2.0], damping=0.5).energy_rate([1.0, 0, 0])
-        np.float64(-1.6)
-        """
+        """dE/dt = -gamma sum_i alpha/(1 + alpha^2) |m_i x h_i|^2 in a constant field without spin torque and noise."""
         spins = self._spins(m)
         turning = np.cross(spins, self.effective_field(spins, time))
         rate = self.gyromagnetic * self.damping / (1 + self.damping**2)
@@ -641,14 +599,7 @@ class LandauLifshitz:
         return integrate(self.field, span, spins, step=step, dt=dt, **options)
 
     def noise(self, shape: tuple[int, ...], dt: float, seed: int, parts: int = 1) -> Increments:
-        """The `Increments` that `integrate` uses for spins of a shape (..., *shape, 3), to compare runs on one path.
-
-        Examples
-        --------
-        >>> warm = LandauLifshitz(damping=0.1, temperature=0.5)
-        >>> warm.noise((2, 3), 0.01, seed=4)(0).shape
-        (2, 3)
-        """
+        """The `Increments` that `integrate` uses for spins of a shape (..., *shape, 3), to compare runs on one path."""
         return Increments(shape, dt, seed, parts)
 
     def thermal_step(self, step: Step, noise: Increments, begin: float = 0.0) -> ThermalStep:

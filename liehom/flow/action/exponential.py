@@ -37,9 +37,6 @@ from liehom.flow.series.lie_series import cayley_magnus, dcayley_inverse, dexp, 
 from liehom.flow.series.node import Node
 from liehom.flow.tracing.array import Traced, entire_function, exponential_action
 
-# Exponentials: analytic maps Exp from g to the group with Exp(x) = 1 + x + x^2/2 + ..., acting on V: the interface,
-# and the true one by its Taylor series on the vector and by the matrix exponential.
-
 # up to this norm of rho(x) the series on the vector is cheaper than a matrix exponential of the same precision
 MAX_NORM = 8.0
 MAX_NORM_EXTENDED = 64.0
@@ -98,14 +95,6 @@ class Exponential(ABC):
         """The vector d/dt Exp(x + t v) m at t = 0, for arrays; Newton's method in implicit steps uses it.
 
         By default a difference quotient, which has half of the digits.
-
-        Examples
-        --------
-        >>> import numpy as np
-        >>> import liehom as lh
-        >>> exp = lh.Action(lh.defining(lh.so(2))).exponential
-        >>> exp.tangent(np.array([0.0]), np.array([1.0]), np.array([1.0, 0.0])).round(6).tolist()
-        [0.0, 1.0]
         """
         ahead: Any = self.act(x + DIFFERENCE * v, m)
         return (ahead - self.act(x, m)) / DIFFERENCE
@@ -509,8 +498,6 @@ class Cayley(Exponential):
 
     Raises
     ------
-    InputError
-        If no such D is known, so that the group is not known to be quadratic.
     SingularError
         On evaluation where the transform is not defined: if D(x) has the real eigenvalue 2 or, if rho is not D, a real
         eigenvalue of size at least 2.

@@ -248,8 +248,6 @@ def _holds(action: Action, inverse: TightInverse, points: Array) -> bool:
     )
 
 
-# The tight frames of orbits on which all singular values agree.
-
 POINTS_AT_ONCE = 4096
 """Points whose matrices are in memory at once."""
 OWN_STREAM = 20011

@@ -165,9 +165,6 @@ def compared_methods(
     return compared
 
 
-# WorkPrecisionTable: errors and costs of several methods on one problem, one row for each run.
-
-
 class WorkPrecisionRow(NamedTuple):
     """Errors and costs of a method with one step size or tolerance.
 
@@ -319,8 +316,6 @@ def sorted_rows(rows: Sequence[WorkPrecisionRow], methods: Sequence[str]) -> tup
     return tuple(sorted(rows, key=lambda row: (order[row.method], row.dt is None, -(row.dt or row.tolerance or 0.0))))
 
 
-# work_precision: errors and costs of several methods on one problem, for several step sizes or tolerances.
-
 Made = TypeVar("Made")
 ENOUGH = 1.0  # seconds of CPU time after which a call is not timed again
 FINEST, SECOND = 1e-13, 1e-11
@@ -378,8 +373,6 @@ def work_precision(
 
     Raises
     ------
-    InputError, ShapeError
-        If an argument is not right: neither step sizes nor tolerances, two methods with the same label.
     ConvergenceError
         If the reference does not exist until the end.
     KeyboardInterrupt, LimitError

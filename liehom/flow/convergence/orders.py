@@ -60,9 +60,6 @@ class MeasuredTable(DisplayedTable, ABC):
         return f", {self.trajectories} trajectories (root mean squares)" if self.trajectories != 1 else ""
 
 
-# ConvergenceTable: errors for several step sizes, and the slopes between those above round-off.
-
-
 class ConvergenceRow(NamedTuple):
     """Errors for one step size, with slopes to the previous row; NaN if an error is below its floor."""
 
@@ -232,11 +229,6 @@ def floor_of(points: Array, dtype: np.dtype[Any], steps: npt.ArrayLike, accuracy
     return MARGIN * max(accuracy, unit * math.sqrt(float(np.max(steps, initial=1))))
 
 
-# observed_order: the measured order of a method, on orbits and on trajectories.
-#     orbit error = min over s near T of |y - F_s(m_0)|,   trajectory error = |y - F_T(m_0)|,   y after steps of size h,
-# root mean squares over an ensemble; the order is the slope of log(error) over log(h).
-
-
 def observed_order(
     field: GeneratorField,
     y0: npt.ArrayLike,
@@ -277,8 +269,6 @@ def observed_order(
 
     Raises
     ------
-    InputError, ShapeError
-        If an argument is not right: fewer than two different step sizes, or a reference with another initial point.
     ConvergenceError
         If the run fails for every step size, or the solution does not exist until the end.
 

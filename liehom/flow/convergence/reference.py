@@ -46,8 +46,6 @@ class Reference:
 
     Raises
     ------
-    ShapeError, InputError
-        If an initial point, the order or the tolerance is not right.
     SeriesError
         If psi cannot be expanded.
 
@@ -307,8 +305,6 @@ def orbit_distance(
 
     Raises
     ------
-    ShapeError, InputError
-        If y or the window has a wrong shape or is not finite.
     ConvergenceError
         If the solution does not exist until t.
 

@@ -33,8 +33,6 @@ from liehom.flow.steps.step import (
     step_variable,
 )
 
-# Steps of low order (Euler, backward Euler and Heun), and LieTaylor, of any order.
-
 
 @final
 @dataclass(frozen=True)

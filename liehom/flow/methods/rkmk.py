@@ -50,9 +50,6 @@ class RKMK(OneExponential):
 
     Raises
     ------
-    InputError
-        If no tableau has this name. In a step: if the order is above 2 and the inverse differential of the
-        exponential is not known, or the point is exact and the coefficients are floats.
     ConvergenceError
         In an implicit step, if the iteration does not converge because the step size is too large.
 
@@ -94,24 +91,11 @@ class RKMK(OneExponential):
 
     @property
     def terms(self) -> int:
-        """Number of terms of the series of dexp^-1 in use: the order minus 1, at least 1.
-
-        Examples
-        --------
-        >>> RKMK("heun").terms, RKMK("rk4").terms
-        (1, 3)
-        """
+        """Number of terms of the series of dexp^-1 in use: the order minus 1, at least 1."""
         return max(self.order - 1, 1)
 
     def coefficients(self, like: Values) -> Coefficients:
-        """The nonzero coefficients in the numbers of the array `like`.
-
-        Examples
-        --------
-        >>> import numpy as np
-        >>> RKMK("kutta3").coefficients(np.zeros(1)).a
-        ((), ((0, 0.5),), ((0, -1.0), (1, 2.0)))
-        """
+        """The nonzero coefficients in the numbers of the array `like`."""
         if is_exact(like):
             return self._exact(like)
         kind = "g" if like.dtype == np.longdouble and not is_jax(like) else "d"

@@ -136,10 +136,6 @@ def elementary_weights(matrix: npt.NDArray[Any], weights: npt.NDArray[Any]) -> I
         yield fresh @ weights
 
 
-# Order conditions of a Runge-Kutta method, checked order by order, exactly or with a stated tolerance. The condition of
-# a rooted tree t is Phi(t) = 1/gamma(t), see `rooted_trees`.
-
-
 @final
 @dataclass(frozen=True, slots=True)
 class Violation:
@@ -245,12 +241,8 @@ class Tableau(Displayed):
 
     Raises
     ------
-    ShapeError
-        If the numbers of entries do not fit together.
     FieldError, ParseError
         If an entry is not a number, or not in the field.
-    InputError
-        If c is not the row sums, or an order condition fails: the message names the tree and the defect.
 
     Examples
     --------
@@ -350,13 +342,7 @@ tree [τ] of order 2: weight 1/3, expected 1/2, defect -1/6; claim order 1, whic
         return next((violation for violation, _ in checks if violation is not None), None)
 
     def actual_order(self, *, embedded: bool = False) -> int:
-        """The highest order (at most 14) whose conditions all hold; 0 if sum b is not 1.
-
-        Examples
-        --------
-        >>> Tableau([[], [1]], ["1/2", "1/2"], order=1).actual_order()
-        2
-        """
+        """The highest order (at most 14) whose conditions all hold; 0 if sum b is not 1."""
         violation = self.first_violation(embedded=embedded)
         return MAX_ORDER if violation is None else violation.order - 1
 
@@ -386,14 +372,7 @@ tree [τ] of order 2: weight 1/3, expected 1/2, defect -1/6; claim order 1, whic
         return a, array(self.b), array(self.c), None if self.embedded_b is None else array(self.embedded_b)
 
     def to_strings(self) -> dict[str, Any]:
-        """The coefficients as strings in the grammar of values: a, b, c and, if it exists, embedded_b.
-
-        Examples
-        --------
-        >>> from liehom.flow.methods import tableau
-        >>> tableau("gauss2").to_strings()["c"]
-        ['1/2 - 1/6*sqrt(3)', '1/2 + 1/6*sqrt(3)']
-        """
+        """The coefficients as strings in the grammar of values: a, b, c and, if it exists, embedded_b."""
         shown = self.field.format
         rows = {"b": self.b, "c": self.c} | ({} if self.embedded_b is None else {"embedded_b": self.embedded_b})
         a = [[shown(x) for x in row] for row in self.a]

@@ -137,8 +137,6 @@ def collocation(name: str, nodes: Sequence[ScalarLike], order: int, *, field: Fi
 
     Raises
     ------
-    InputError
-        If nodes coincide, or the order is not reached.
     FieldError, ParseError
         If a node is not in an exact field.
 
@@ -220,11 +218,6 @@ def _refined(ascending: list[int], starts: npt.NDArray[np.float64]) -> list[Scal
         zeros.append(QQ.convert(x))
     return zeros
 
-
-# Classical Runge-Kutta methods by name; each proves its order at the first request.
-#
-# The coefficients are in `EXPLICIT` and `IMPLICIT`. Those of collocation methods are computed from their nodes
-# (`collocation`), and dop853 is read from ``scipy.integrate.DOP853``.
 
 _ALIASES = {
     "explicit euler": "euler",

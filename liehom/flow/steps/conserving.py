@@ -173,9 +173,6 @@ def _square(x: Array) -> Array:
     return (x * x).sum(axis=-1)
 
 
-# ConservingStep: a conserving step at one point, as a function of the step size. For each h the isotropy t^(n-1) sigma
-# is found by Newton's method (`level_newton`), or by one linear solve.
-
 CONSERVED_ROUNDOFFS = 32.0  # F counts as conserved up to this many units of its round-off
 TOLERATED_UNITS = 0.5  # residuals of F within this many units of round-off, eps times `Conservation.scale`, count as 0
 

@@ -484,9 +484,6 @@ def correct(recursion: OrderRecursion, base_order: int, order: int) -> Correctio
     )
 
 
-# Corrected(step, order): a step raised to any order by isotropy, with its clock (time reparametrization) tau.
-
-
 @final
 class Corrected(Derived):
     """A step corrected along the isotropy of each point, so that it captures orbits to order n.

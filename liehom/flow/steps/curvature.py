@@ -61,14 +61,7 @@ class Submanifold:
 
     @classmethod
     def orbits(cls, representation: Representation) -> Submanifold:
-        """The orbits of a representation; the tangent space at m is rho(g) m.
-
-        Examples
-        --------
-        >>> import liehom as lh
-        >>> Submanifold.orbits(lh.defining(lh.so(3)))
-        <submanifold: orbits of <representation 'defining' of <Lie algebra so(3) of dimension 3 over QQ> on QQ^3>>
-        """
+        """The orbits of a representation; the tangent space at m is rho(g) m."""
         if not isinstance(representation, Representation):
             raise InputError(f"expected a Representation, got {displayed(representation)}")
         action = action_map(representation)

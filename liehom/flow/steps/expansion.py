@@ -88,8 +88,6 @@ def flow_series(field: GeneratorField, m: ArrayLike, order: int, t: Real = 0.0) 
 
     Raises
     ------
-    InputError
-        If the order is less than 1.
     SeriesError
         If psi cannot be expanded.
 

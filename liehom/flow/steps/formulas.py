@@ -138,17 +138,7 @@ class ClosedForm:
     _elements: dict[tuple[str, int], Any] = field(repr=False)
 
     def equal(self, a: ExpressionLike, b: ExpressionLike) -> bool:
-        """Whether two expressions in the symbols are equal wherever the constraints hold, by proof, not by sampling.
-
-        Examples
-        --------
-        >>> import liehom as lh
-        >>> from liehom.flow.steps import closed_form
-        >>> top = ["a*m2**3 - a*m2", "-a*m1*m2**2", "a*m0*m2**2"]
-        >>> formula = closed_form(lh.defining(lh.so(3)), top, lh.Euler(), 2)
-        >>> formula.equal(formula.factor[1], "a*(m0**2 + m1**2 - 1)")
-        True
-        """
+        """Whether two expressions in the symbols are equal wherever the constraints hold, by proof, not by sampling."""
         return bool(self.symbols.element(a) == self.symbols.element(b))
 
     def function(self, k: int | None = None) -> Callable[..., Any]:
@@ -179,16 +169,7 @@ class ClosedForm:
         return compiled_function(self.symbols, self._elements.get(("zeta", last if k is None else k), zeros))
 
     def clock_function(self, k: int | None = None) -> Callable[..., Any]:
-        """Function (m, t=0, **parameters) -> c_k, an array of shape (...,); by default for the last k.
-
-        Examples
-        --------
-        >>> import liehom as lh
-        >>> from liehom.flow.steps import closed_form
-        >>> formula = closed_form(lh.defining(lh.so(3)), ["a*m0", "0", "0"], lh.Euler(), 2)
-        >>> float(formula.clock_function()([0.6, 0.48, 0.64], a=2.0).round(12))
-        0.48
-        """
+        """Function (m, t=0, **parameters) -> c_k, an array of shape (...,); by default for the last k."""
         run = compiled_function(self.symbols, [self._elements["clock", max(self.clock) if k is None else k]])
         return lambda m, t=0.0, **parameters: run(m, t, **parameters)[..., 0]
 
@@ -273,11 +254,6 @@ def closed_form(
     ------
     FieldError
         If the representation is not over QQ, or a coefficient is a float.
-    InputError
-        If psi has unknown symbols or is not a rational function of them; if the constraints are not invariant; if
-        `isotropy` does not generate g_m; if all points are equilibria, or the step is not consistent with the flow.
-    ShapeError
-        If psi or `isotropy` has the wrong length.
 
     Notes ----- Theorem 5 with its factor, one order after the other. The solution is the one with the smallest |c| and,
     among those, the smallest |zeta|, as in `liehom.steps.correction`. If the system has no solution, `reached` is below

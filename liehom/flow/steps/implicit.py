@@ -473,8 +473,6 @@ def _is_small(change: Tracer, x: Tracer) -> Tracer:
     return jnp.max(jnp.abs(change), axis=(0, -1), keepdims=True) <= bound
 
 
-# solve_implicitly: the solution of the equation of an implicit step, on arrays, Jets, tracers and JAX arrays.
-
 MAX_ITERATIONS = 200
 SLOW = 0.4
 """A fixed point iteration that multiplies the change by more than this is given up, and Newton's method begins."""

@@ -143,10 +143,6 @@ def chi(
 
     Raises
     ------
-    InputError
-        If n is less than 1, or a coefficient of zeta is not in g_m.
-    ShapeError
-        If zeta has another shape.
     FieldError
         If an exact coordinate is not in the representation's field.
 
@@ -186,10 +182,6 @@ def order_condition(
 
     Raises
     ------
-    InputError
-        If the step agrees with the flow to a lower order only.
-    ShapeError
-        If m is not one point.
     FieldError
         If an exact coordinate is not in the representation's field.
 

@@ -449,14 +449,7 @@ class Step(ABC):
         return self
 
     def with_prepared(self, **data: object) -> Self:
-        """A copy of the step with further attributes, for `prepare`; also of frozen steps.
-
-        Examples
-        --------
-        >>> import liehom as lh
-        >>> lh.Euler().with_prepared(table=(1, 2)).table
-        (1, 2)
-        """
+        """A copy of the step with further attributes, for `prepare`; also of frozen steps."""
         step = copy(self)
         for name, value in data.items():
             object.__setattr__(step, name, value)
@@ -553,9 +546,6 @@ def zero_series(zero: Values, order: int) -> Jet:
     for _ in range(order):
         series.extend(None)
     return series
-
-
-# A point as floats or as exact numbers of the representation's field.
 
 
 def read_point(representation: Representation, m: ArrayLike) -> tuple[npt.NDArray[Any], IntegerArray]:
