@@ -7,15 +7,14 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
-from inspect import Parameter, signature
 from typing import Any, ClassVar, Unpack, final
 
 import numpy as np
 import numpy.typing as npt
 
-from liehom.base.errors import InputError, ShapeError, displayed
+from liehom.base.errors import InputError, ShapeError
 from liehom.base.typing import Array, IntegerArray, Values
-from liehom.flow.action.components import joined
+from liehom.flow.action.components import joined, parameters_like
 from liehom.flow.action.field import GeneratorField
 from liehom.flow.action.maps import FieldMatrix
 from liehom.flow.action.motions import are_rotations, matrix_to_quaternion, quaternion_to_matrix
@@ -94,8 +93,6 @@ def rotations(attitude: npt.ArrayLike | None) -> Array:
 # momentum is stored in space, where it changes by torques and forces only: p' = Q tau. So the group is a product of
 # rotations, or rigid motions, with translations of the momentum, and a momentum on which nothing acts is constant bit
 # for bit.
-
-POSITIONAL = (Parameter.POSITIONAL_ONLY, Parameter.POSITIONAL_OR_KEYWORD)
 
 
 @final
@@ -181,7 +178,13 @@ class PosedBody(Body):
         self.inertia: Array = tensor.to_numpy()
         self._inertia, self._inverse = FieldMatrix(tensor), FieldMatrix(tensor.inverse())
         self._potential, self._driven = potential, force is not None
-        psi: Any = self._free if force is None else generator_of(force, self._forced, self._force)
+        psi: Any = self._free
+        if force is not None:
+
+            def forced(y: Values, *rest: object) -> Values:
+                return self._forced(y, lambda state: force(state, *rest))
+
+            psi = parameters_like(force, forced, self._force, "state")
         self.field = GeneratorField(space(self._driven), psi)
 
     @abstractmethod
@@ -265,25 +268,6 @@ def along(attitude: Values, v: Values) -> Values:
 def across(attitude: Values, v: Values) -> Values:
     """Q^T v, shape (..., 3), of vectors in space."""
     return np.sum(attitude * v[..., :, None], axis=-2)
-
-
-def generator_of(
-    force: Callable[..., Any], forced: Callable[[Values, Callable[[Any], Any]], Values], what: str
-) -> Callable[..., Values]:
-    """psi with as many parameters as the force; `forced(y, apply)` is psi at y, where apply(state) calls the force."""
-    if not callable(force):
-        raise InputError(f"the {what} is a function of (state), (state, t) or (state, t, args), got {displayed(force)}")
-    parameters = signature(force).parameters.values()
-    needed = [p for p in parameters if p.kind in POSITIONAL and p.default is Parameter.empty]
-    if len(needed) == 1:
-        return lambda y: forced(y, force)
-    if len(needed) == 2:
-        return lambda y, t: forced(y, lambda state: force(state, t))
-    if len(needed) == 3:
-        return lambda y, t, args: forced(y, lambda state: force(state, t, args))
-    raise InputError(
-        f"the {what} has the parameters {signature(force)}: expected (state), (state, t) or (state, t, args)"
-    )
 
 
 def vector_like(value: object, like: Values, what: str, size: int = 3) -> Values:
