@@ -429,18 +429,10 @@ def invariant_form(representation: Representation) -> Matrix:
     identity = field.identity(n)
     if n > MAX_SIZE or all((a + a.T).is_zero() for a in representation.matrices):
         return identity
-    units = [
-        field.from_entries([field.one if {k // n, k % n} == {i, j} else field.zero for k in range(n * n)], n, n)
-        for i in range(n)
-        for j in range(i, n)
-    ]
-    rows = [
-        field.stack_columns([(a.T @ b + b @ a).reshape(1, n * n) for a in representation.matrices], 1) for b in units
-    ]
-    kept = field.stack_rows(rows, n * n * len(representation.matrices)).left_null_space()
-    if kept.nrows == 0:
+    forms = representation.invariant_forms().symmetric
+    if not forms:
         return identity
-    flat = kept @ field.stack_rows([b.reshape(1, n * n) for b in units], n * n)
+    flat = field.stack_rows([b.reshape(1, n * n) for b in forms], n * n)
     weights = (flat @ flat.T).solve(flat @ identity.reshape(n * n, 1))
     form = (weights.T @ flat).reshape(n, n)
     return form if form.is_positive_definite() else identity
