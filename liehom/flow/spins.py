@@ -9,7 +9,7 @@ from typing import Any, TypeAlias, Unpack, final
 import numpy as np
 import numpy.typing as npt
 
-from liehom.base.errors import InputError, ShapeError
+from liehom.base.errors import InputError, ShapeError, checked_integer
 from liehom.base.typing import Array, Real, Values
 from liehom.flow.action.components import joined
 from liehom.flow.action.field import GeneratorField
@@ -644,10 +644,9 @@ class LandauLifshitz:
             raise InputError(f"{step!r} with noise: its correction expands smooth fields; take Heun() or RKMK('heun')")
         if seed is None:
             seed = int(np.random.SeedSequence().generate_state(1)[0])
-        elif isinstance(seed, bool) or not isinstance(seed, int | np.integer) or seed < 0:
-            raise InputError(f"the seed is {seed!r}, expected an integer at least 0")
+        seed = checked_integer(seed, "the seed", 0)
         size = float(np.asarray(dt))
-        return self.thermal_step(Heun() if step is None else step, self.noise(shape, size, int(seed)), float(span[0]))
+        return self.thermal_step(Heun() if step is None else step, self.noise(shape, size, seed), float(span[0]))
 
     def _check_together(self, step: Step | None, dt: npt.ArrayLike | None, options: SingleRunOptions) -> None:
         """Raise InputError if the options would bring coupled spins to different times."""

@@ -9,7 +9,7 @@ from typing import Any, TypeAlias, final, overload
 import numpy as np
 import numpy.typing as npt
 
-from liehom.base.errors import InputError, ShapeError, displayed
+from liehom.base.errors import InputError, ShapeError, checked_integer, displayed
 from liehom.base.typing import Array, IntegerArray, Real, ScalarLike, Values
 from liehom.exact.algebra.core.subalgebra import Subalgebra
 from liehom.exact.algebra.linear.closure import square_matrices
@@ -62,9 +62,7 @@ class SymmetricMatrices:
     __slots__ = ("_columns", "_place", "_rows", "k", "representation")
 
     def __init__(self, k: int) -> None:
-        if isinstance(k, bool) or not isinstance(k, int | np.integer) or k < 2:
-            raise InputError(f"the size of the matrices is an integer at least 2, got {displayed(k)}")
-        self.k: int = int(k)
+        self.k: int = checked_integer(k, "the size of the matrices", 2)
         self.representation: Representation = sym_conjugation(self.k)
         # standard basis of so(k): for i < j the matrix with entry 1 at (j, i)
         self._columns, self._rows = (x.copy() for x in np.triu_indices(self.k, 1))

@@ -8,7 +8,7 @@ from typing import Any, final
 import numpy as np
 import numpy.typing as npt
 
-from liehom.base.errors import ConvergenceError, InputError, ShapeError
+from liehom.base.errors import ConvergenceError, InputError, ShapeError, checked_integer
 from liehom.base.typing import Array, IntegerArray
 from liehom.flow.action.field import GeneratorField, check_point
 from liehom.flow.run.options import points_of
@@ -84,10 +84,9 @@ class Reference:
         start = points_of(y0)
         check_point(field.representation, start)
         order = ORDERS[start.dtype] if order is None else order
-        if isinstance(order, bool) or not isinstance(order, int | np.integer) or order < MIN_ORDER:
-            raise InputError(f"the order of a reference is an integer at least {MIN_ORDER}, got {order!r}")
         eps = np.finfo(start.dtype).eps
-        self.field, self.start, self.order = field, start, int(order)
+        self.field, self.start = field, start
+        self.order = checked_integer(order, "the order of a reference", MIN_ORDER)
         self.t0: np.floating[Any] = _number("t0", t0, start.dtype)
         self.tolerance: np.floating[Any] = eps if tolerance is None else _number("tolerance", tolerance, start.dtype)
         if not 0 < self.tolerance < 1:
@@ -101,9 +100,7 @@ class Reference:
 
     def derivative(self, t: npt.ArrayLike, k: int = 1) -> Array:
         """The k-th derivative with respect to time at t, of the shape of ``ref(t)``."""
-        if isinstance(k, bool) or not isinstance(k, int | np.integer) or k < 0:
-            raise InputError(f"the number of derivatives is an integer at least 0, got {k!r}")
-        return self._solution.evaluate(self._times(t), int(k))
+        return self._solution.evaluate(self._times(t), checked_integer(k, "the number of derivatives", 0))
 
     def accuracy(self, t: npt.ArrayLike) -> Array:
         """Largest distance from a second solution, of order n + 3 and with shorter pieces, until t, shape (...,).

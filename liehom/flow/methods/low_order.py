@@ -12,7 +12,7 @@ from typing import Any, NamedTuple, final
 
 import numpy as np
 
-from liehom.base.errors import InputError
+from liehom.base.errors import InputError, checked_integer
 from liehom.base.typing import Values
 from liehom.flow.action.exponential import TrueExponential
 from liehom.flow.action.space import Action
@@ -118,8 +118,7 @@ class LieTaylor(OneExponential):
     n: int
 
     def __post_init__(self) -> None:
-        if isinstance(self.n, bool) or not isinstance(self.n, int | np.integer) or self.n < 1:
-            raise InputError(f"the order of a Taylor step is an integer at least 1, got {self.n!r}")
+        checked_integer(self.n, "the order of a Taylor step")
 
     @property
     def order(self) -> int:

@@ -11,9 +11,7 @@ from collections.abc import Callable
 from difflib import get_close_matches
 from functools import partial
 
-import numpy as np
-
-from liehom.base.errors import InputError, displayed
+from liehom.base.errors import InputError, checked_integer, displayed
 from liehom.flow.methods.composition import Composition, Splitting
 from liehom.flow.methods.low_order import BackwardEuler, CommutatorFree4, CrouchGrossman3, Euler, Heun, LieTaylor
 from liehom.flow.methods.midpoint import IsospectralMidpoint, MoserVeselov, SphericalMidpoint, VariationalMidpoint
@@ -75,15 +73,15 @@ def step_named(base: str, order: int | None = None) -> Step:
         raise InputError(
             f"a base is a name such as 'euler' or 'rk4', got {displayed(base)}; known: {', '.join(step_names())}"
         )
-    if order is not None and (isinstance(order, bool) or not isinstance(order, int | np.integer) or order < 1):
-        raise InputError(f"the order is an integer at least 1, got {displayed(order)}")
+    if order is not None:
+        order = checked_integer(order, "the order")
     key = _key(base)
     if key in _SERIES and order is not None:
-        return _SERIES[key](int(order))
+        return _SERIES[key](order)
     step = _plain(_ALIASES.get(key, key), base)
     if order is None or order <= step.order:
         return step
-    return Composition(step, int(order)) if key in map(_key, _SYMPLECTIC) else Corrected(step, int(order))
+    return Composition(step, order) if key in map(_key, _SYMPLECTIC) else Corrected(step, order)
 
 
 def step_names() -> tuple[str, ...]:

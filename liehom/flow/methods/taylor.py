@@ -16,7 +16,7 @@ from typing import Any, ClassVar, NamedTuple, final
 
 import numpy as np
 
-from liehom.base.errors import InputError
+from liehom.base.errors import InputError, checked_integer
 from liehom.base.typing import Array, BooleanArray, IntegerArray, Values
 from liehom.flow.action.exponential import TrueExponential
 from liehom.flow.action.field import GeneratorField
@@ -99,8 +99,7 @@ class Taylor(Step):
     _landing: ClassVar[Landing | None] = None  # of `prepare`
 
     def __post_init__(self) -> None:
-        if isinstance(self.n, bool) or not isinstance(self.n, int | np.integer) or self.n < 1:
-            raise InputError(f"the order of a Taylor step is an integer at least 1, got {self.n!r}")
+        checked_integer(self.n, "the order of a Taylor step")
 
     @classmethod
     def for_tolerance(cls, tolerance: float) -> Taylor:

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple, final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from liehom.base.errors import InputError, TraceError
+from liehom.base.errors import InputError, TraceError, checked_integer
 from liehom.base.typing import Array, BooleanArray, IntegerArray, Real, Values
 from liehom.flow.action.field import GeneratorField
 from liehom.flow.action.space import Action
@@ -451,9 +451,7 @@ def conserved_order(
     >>> result.order, result.coefficients[4]
     (3, 100899/25000000)
     """
-    if up_to is not None and (isinstance(up_to, bool) or not isinstance(up_to, int | np.integer) or up_to < 1):
-        raise InputError(f"up_to is an integer at least 1, got {up_to!r}")
-    bound = step.order + EXTRA_ORDERS if up_to is None else int(up_to)
+    bound = step.order + EXTRA_ORDERS if up_to is None else checked_integer(up_to, "up_to")
     point, dimension = read_point(field.representation, m)
     integral = FirstIntegral(F, field.representation.size)
     action = Action(field.representation, exponential)
@@ -571,12 +569,12 @@ class Conserving(Derived):
             raise InputError("the step conserves something already: give its base and a list of all integrals")
         if aim not in AIMS:
             raise InputError(f"aim is {aim!r}, expected one of {', '.join(map(repr, AIMS))}")
-        if order is not None and (isinstance(order, bool) or not isinstance(order, int | np.integer) or order < 1):
-            raise InputError(f"the order to which F is conserved is an integer at least 1, got {order!r}")
         if value is not None and aim == "previous":
             raise InputError("the step aims at the previous point: leave out the value")
         self.step, self.aim, self.linear = step, aim, bool(linear)
-        self.conserved_order: int | None = None if order is None else int(order)
+        self.conserved_order: int | None = None
+        if order is not None:
+            self.conserved_order = checked_integer(order, "the order to which F is conserved")
         self._source = F
         self._value = None if value is None else np.asarray(value, dtype=float)
 

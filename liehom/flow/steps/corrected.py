@@ -10,7 +10,7 @@ from typing import Any, final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from liehom.base.errors import InputError
+from liehom.base.errors import InputError, checked_integer
 from liehom.base.typing import BooleanArray, IntegerArray, Real, Values
 from liehom.flow.action.field import GeneratorField, check_point
 from liehom.flow.action.space import Action, IsotropyFrame
@@ -527,12 +527,10 @@ class Corrected(Derived):
         step = as_step(step)
         if isinstance(step, Corrected):
             raise InputError("the step is corrected already: give its base and the higher order")
-        if isinstance(order, bool) or not isinstance(order, int | np.integer) or order < 1:
-            raise InputError(f"the order is an integer at least 1, got {order!r}")
         if weight is not None and not weight > 0:
             raise InputError(f"the weight of the clock is a positive number, got {weight!r}")
         self.step, self.weight = step, weight
-        self._order = max(int(order), step.order)
+        self._order = max(checked_integer(order, "the order"), step.order)
 
     @property
     def order(self) -> int:
