@@ -162,7 +162,7 @@ class TrueExponential(Exponential, ABC):
         """The Jet exp(rho(x(t))) m(t): the sum of the nested products rho(x)^j m / j!."""
         x = without_constant(x, check=True)
         total = m if isinstance(m, Jet) else Jet.constant(m, x.order)
-        term = total
+        term: Any = total
         for j in range(1, x.order + 1):
             term = self.infinitesimal(x, term)
             term = term / j if j > 1 else term
@@ -547,13 +547,10 @@ class Cayley(Exponential):
         return self._coefficients(dcayley_inverse(self._matrices.left(x), self._matrices.left(y)))
 
     def logarithmic_series(self, a: Jet) -> Jet:
-        return self._coefficients(cayley_magnus(self._matrices.left(a)))
+        matrix: Any = self._matrices.left(a)
+        return self._coefficients(cayley_magnus(matrix))
 
-    @overload
-    def _coefficients(self, matrix: Jet) -> Jet: ...
-    @overload
-    def _coefficients(self, matrix: Values) -> Values: ...
-    def _coefficients(self, matrix: Values) -> Values:
+    def _coefficients(self, matrix: Values) -> Any:
         """The x with D(x) = matrix, shape (..., dim)."""
         return self._dual(matrix.reshape((*matrix.shape[:-2], matrix.shape[-1] ** 2)))
 

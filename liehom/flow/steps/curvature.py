@@ -73,7 +73,8 @@ class Submanifold:
                 raise InputError(f"the orbits have the dimensions {dimension.tolist()}: take points of one dimension")
             # combinations of generators that are independent at the start, and so next to it
             right = np.linalg.svd(action.right(start), full_matrices=False)[2][..., : int(dimension[0]), :]
-            return action.right(curve) @ np.swapaxes(right, -1, -2)
+            along: Any = action.right(curve)
+            return along @ np.swapaxes(right, -1, -2)
 
         return cls(columns, normal=False, place=None, title=f"orbits of {representation!r}")
 
