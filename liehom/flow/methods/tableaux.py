@@ -122,7 +122,7 @@ GAUSS_DIGITS = 60
 """Correct decimal digits of the nodes of Gauss methods with 4 and more stages, before they are rounded to float64."""
 
 
-def collocation(name: str, nodes: Sequence[ScalarLike], order: int, *, field: Field | None = None) -> Tableau:
+def collocation(name: str, nodes: Sequence[ScalarLike], order: int) -> Tableau:
     """The `Tableau` of the collocation method with given nodes.
 
     Parameters
@@ -132,8 +132,6 @@ def collocation(name: str, nodes: Sequence[ScalarLike], order: int, *, field: Fi
         Different numbers: strings, integers, fractions.
     order : int
         The claimed order: s, or more if the nodes are those of a quadrature formula of higher order.
-    field : Field, optional
-        An exact field that contains the nodes (default: the smallest such field).
 
     Raises
     ------
@@ -145,11 +143,9 @@ def collocation(name: str, nodes: Sequence[ScalarLike], order: int, *, field: Fi
     >>> collocation("equal steps", [0, "1/2", 1], order=4)
     <tableau 'equal steps' of order 4, 3 stages, over QQ>
     """
-    texts = [x if isinstance(x, str) else str(x) for x in nodes]
-    numbers = common_field(texts) if field is None else field
-    if not numbers.exact:
-        raise InputError("collocation solves for its coefficients exactly; give nodes in an exact field")
-    c = [numbers.convert(x) for x in (texts if field is None else nodes)]
+    texts = [str(x) for x in nodes]
+    numbers = common_field(texts)
+    c: list[Scalar] = [numbers.convert(x) for x in texts]
     if len(set(c)) != len(c):
         raise InputError(f"the nodes of a collocation method are different numbers, got {', '.join(texts)}")
     *a, b = _coefficients(c, numbers)

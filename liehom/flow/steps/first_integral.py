@@ -20,7 +20,7 @@ from liehom.flow.door import Representation, Subalgebra, coadjoint
 from liehom.flow.series.arrays import as_values, is_exact, zeros
 from liehom.flow.series.jet import Jet
 from liehom.flow.steps.expansion import ROUND_OFF_UNITS, Flow, flow_series
-from liehom.flow.steps.step import ExponentialLike, Step
+from liehom.flow.steps.step import Step
 from liehom.flow.tracing.array import Traced
 
 # FirstIntegral: a map F: M -> W that the flow conserves (Definition 8), with its derivative by Jets.
@@ -123,7 +123,7 @@ class FirstIntegral:
         """Values (..., k) in the shape of the user's F: (...,) if F is a number."""
         return value[..., 0][()] if self.scalar else value
 
-    def check(self, flow: Flow, order: int, scale: Values | None = None) -> None:
+    def check(self, flow: Flow, order: int) -> None:
         """Check that the Taylor coefficients 1, ..., order of F along the flow vanish.
 
         Parameters
@@ -131,8 +131,6 @@ class FirstIntegral:
         flow : Flow
             Its expansion at a point or several, at least to this order.
         order : int
-        scale : array of shape (..., k), optional
-            The size of F to which derivatives are compared; |F| + |DF| |m| if it is not given.
         """
         series = self(flow.points)
         if not isinstance(series, Jet):
@@ -140,7 +138,7 @@ class FirstIntegral:
         m = flow.point(0)
         exact = is_exact(m)
         if not exact:
-            unit = _largest(*self.gradient(m), m) if scale is None else scale
+            unit = _largest(*self.gradient(m), m)
             sizes = [np.linalg.norm(np.asarray(flow.point(k), dtype=float), axis=-1) for k in range(order + 1)]
         rate: Any = 0.0
         turned: Any = 0.0
@@ -439,7 +437,6 @@ def conservation_map(
     F: IntegralSource,
     *,
     t: Real = 0.0,
-    exponential: ExponentialLike = "exp",
 ) -> Conservation:
     """`Conservation`: the map chi_m: g_m -> W, the change of E_n by isotropy t^(n-1) zeta in a step.
 
@@ -452,7 +449,6 @@ def conservation_map(
     F : callable, string, sympy expression or list of these
         See `FirstIntegral`.
     t : float or array of shape (...,)
-    exponential : str, Exponential or callable
 
     Returns
     -------
@@ -482,7 +478,7 @@ def conservation_map(
     dimension = check_point(field.representation, point)
     integral = FirstIntegral(F, field.representation.size)
     integral.check(flow_series(field, point, 1, t), 1)
-    action = Action(field.representation, exponential)
+    action = Action(field.representation)
     frame, factor = action.isotropy_frame(point, dimension), 0.5 if step.one_exponential else 1.0
     return Conservation(action, integral, frame, point, field.psi(point, t), factor)
 

@@ -485,7 +485,6 @@ def solve_implicitly(
     start: Values,
     h: Real,
     *,
-    stacked: bool = False,
     rows: Sequence[SparseRow] | None = None,
     reach: float = 1.0,
     hasty: bool = False,
@@ -501,8 +500,6 @@ def solve_implicitly(
     function : callable
     start : array of shape (..., n), or () for a number
     h : float, array, Jet or tracer
-    stacked : bool
-        Whether the first axis is not one of the ensemble, as for unknowns that are matrices.
     rows : sequence of sparse rows, optional
         Coefficients a_ij of a Runge-Kutta method with S stages. The first axis of x is then that of the stages, and
         x_i = function([y_1, ..., y_S])_i with y_i = sum_j a_ij x_j, or None for an empty row; stage i of `function`
@@ -534,38 +531,22 @@ def solve_implicitly(
     """
     if isinstance(h, Jet):
         return _solved_on_jets(function, start, h.order, rows)
+    number = rows is None and np.ndim(start) == 0
     if rows is not None:
         equation = Equation(function, rows)
+    elif number:
+        start, equation = start[None, None], Equation(lambda y: [function(y[0][..., 0])[..., None]], [((0, 1.0),)])
     else:
-        shape, start = np.shape(start), _flat(start, stacked)[None]
-        equation = Equation(lambda y: [_flat(function(_shaped(y[0], shape, stacked)), stacked)], [((0, 1.0),)])
+        start, equation = start[None], Equation(lambda y: [function(y[0])], [((0, 1.0),)])
     tape = h.tape if isinstance(h, Traced) else start.tape if isinstance(start, Traced) else None
+    x: Any
     if tape is not None:
-        found: Any = solved_on_tape(equation, start, tape, SLOW, reach)
+        x = solved_on_tape(equation, start, tape, SLOW, reach)
+    elif is_jax(start):
+        x = solved_by_jax(equation, start, reach)
     else:
-        found = (
-            solved_by_jax(equation, start, reach)
-            if is_jax(start)
-            else _solved(equation, np.asarray(start), reach, hasty)
-        )
-    return found if rows is not None else _shaped(found[0], shape, stacked)
-
-
-def _flat(x: Stage, stacked: bool) -> Stage:
-    """x with all unknowns of a trajectory on the last axis."""
-    if np.ndim(x) == 0:
-        return x[..., None]
-    if not stacked:
-        return x
-    return np.concatenate([x[i] for i in range(np.shape(x)[0])], axis=-1)
-
-
-def _shaped(y: Stage, shape: tuple[int, ...], stacked: bool) -> Stage:
-    """The inverse of `_flat`."""
-    if not shape:
-        return y[..., 0]
-    n = shape[-1]
-    return np.stack([y[..., i * n : (i + 1) * n] for i in range(shape[0])]) if stacked else y
+        x = _solved(equation, np.asarray(start), reach, hasty)
+    return x if rows is not None else x[0][..., 0] if number else x[0]
 
 
 def reach_of(action: Action) -> float:
