@@ -20,9 +20,8 @@ from liehom.base.errors import InputError, checked_integer
 from liehom.base.typing import Array, BooleanArray, IntegerArray, Values
 from liehom.flow.action.exponential import TrueExponential
 from liehom.flow.action.field import GeneratorField
-from liehom.flow.action.invariants import InvariantLanding, invariant_landing
-from liehom.flow.action.quadrics import Quadrics, TightInverse, quadric_orbits, tight_inverse
-from liehom.flow.action.space import Action
+from liehom.flow.action.invariants import InvariantLanding, Quadrics, invariant_landing, quadric_orbits
+from liehom.flow.action.space import Action, TightInverse, tight_inverse
 from liehom.flow.series.arrays import coarse, is_traced, namespace
 from liehom.flow.series.jet import Jet
 from liehom.flow.series.quadratic import AffineFlow, affine_flow
