@@ -76,8 +76,7 @@ def rotations(attitude: npt.ArrayLike | None) -> Array:
     if q.shape[-1:] == (4,):
         if not np.allclose(np.sum(q * q, axis=-1), 1, rtol=0, atol=ROTATION_ATOL):
             raise InputError("the attitude at time 0 is not a unit quaternion: divide it by its norm")
-        turned: Any = quaternion_to_matrix(q)
-        return turned
+        return np.asarray(quaternion_to_matrix(q))
     if q.shape[-2:] != (3, 3):
         raise ShapeError(
             f"the attitude at time 0 has shape {q.shape}, expected (..., 3, 3), or (..., 4) for quaternions"

@@ -275,39 +275,30 @@ class RosenbrockStep(LocalStep):
         self._stages = LastSize(self._computed)
 
     def factors(self, h: Values) -> Factors:
-        return (_weighted(self._method.m, self._stages(h)),)
+        return (combined(sparse_row(self._method.m), self._stages(h)),)
 
     def estimate(self, h: Values) -> Values:
         """rho(x) m with x the difference of the embedded methods, for h (..., 1); shape (..., N)."""
-        return self.action.infinitesimal(_weighted(self._method.e, self._stages(h)), self.m)
+        return self.action.infinitesimal(combined(sparse_row(self._method.e), self._stages(h)), self.m)
 
     def _computed(self, h: Values) -> list[Any]:
         """U_1, ..., U_s."""
         method, linear = self._method, self._linear
         stages: list[Any] = []
         for i, gamma_i in enumerate(method.gammas):
-            u = _weighted(method.a[i], stages)
+            u = combined(sparse_row(method.a[i]), stages)
             if u is None:
                 right = h * (
                     linear.start if method.alpha[i] == 0 else linear.psi(self.m, linear.t + method.alpha[i] * h)
                 )
             else:
                 right = h * linear.value(u, method.alpha[i] * h)
-            before = _weighted(method.c[i], stages)
+            before = combined(sparse_row(method.c[i]), stages)
             right = right if before is None else right + before
             if gamma_i and linear.rate is not None:
                 right = right + gamma_i * h * h * linear.rate
             stages.append(linear.solve(method.gamma * h, method.gamma * right))
         return stages
-
-
-def _weighted(weights: tuple[float, ...], terms: list[Any]) -> Stage:
-    """sum_j weights[j] terms[j]; None if there is nothing to add."""
-    total = None
-    for weight, term in zip(weights, terms, strict=False):
-        if weight:
-            total = weight * term if total is None else total + weight * term
-    return total
 
 
 # ExponentialRosenbrock: steps that integrate the linearization of the field exactly. For u' = f(u), u(0) = 0 in the
