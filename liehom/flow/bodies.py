@@ -634,13 +634,7 @@ class SE3Body(PosedBody):
         momentum: npt.ArrayLike | None = None,
         velocity: npt.ArrayLike | None = None,
     ) -> Array:
-        """States (..., N) with attitude, position, and the momentum or velocity (..., 6) in the body.
-
-        Examples
-        --------
-        >>> SE3Body([1, 2, 3]).start(position=[1.0, 0, 0], velocity=[0, 0, 0, 0, 1.0, 0])[12:].tolist()
-        [0.0, 0.0, 1.0, 0.0, 1.0, 0.0]
-        """
+        """States (..., N) with attitude, position, and the momentum or velocity (..., 6) in the body."""
         mu: Any = np.asarray(one_of(momentum, velocity), dtype=float)
         q, x = rotations(attitude), np.asarray(position, dtype=float)
         if mu.shape[-1:] != (6,) or x.shape[-1:] != (3,):

@@ -280,9 +280,7 @@ TRUST_FRACTION = 0.5
 """Longest Newton step in units of |F'| / |F''|, a time in which the tangent turns or changes by its own length."""
 
 
-def orbit_distance(
-    reference: Reference, y: npt.ArrayLike, t: npt.ArrayLike, *, window: npt.ArrayLike | None = None
-) -> tuple[Array, Array]:
+def orbit_distance(reference: Reference, y: npt.ArrayLike, t: npt.ArrayLike) -> tuple[Array, Array]:
     """Distances of points from the orbits through the initial points of a reference, and the times of the minima.
 
     Parameters
@@ -291,9 +289,7 @@ def orbit_distance(
     y : array_like of shape (..., N)
         One point for each trajectory; more leading axes are more points.
     t : float or array of shape (...,)
-        The times near which the orbit is searched.
-    window : float or array, optional
-        The largest |s - t|; by default |t - t0|, t0 the initial time of the reference.
+        The times near which the orbit is searched, at |s - t| <= |t - t0|, t0 the initial time of the reference.
 
     Returns
     -------
@@ -320,7 +316,8 @@ def orbit_distance(
     >>> round(float(distance), 14), round(float(s), 12)
     (0.25, 2.0)
     """
-    points, s, window = _arguments(reference, y, t, window)
+    points, s = _arguments(reference, y, t)
+    window = np.abs(s - reference.t0)
     low, high = s - window, s + window
     best = _distance(reference, points, s)
     eps = np.finfo(points.dtype).eps
@@ -337,10 +334,8 @@ def orbit_distance(
     return best, s
 
 
-def _arguments(
-    reference: Reference, y: npt.ArrayLike, t: npt.ArrayLike, window: npt.ArrayLike | None
-) -> tuple[Array, Array, Array]:
-    """Points, times and windows, checked and broadcast."""
+def _arguments(reference: Reference, y: npt.ArrayLike, t: npt.ArrayLike) -> tuple[Array, Array]:
+    """Points and times, checked and broadcast."""
     dtype, lead = reference.start.dtype, reference.start.shape[:-1]
     points = points_of(y).astype(dtype)
     if points.shape[-1:] != reference.start.shape[-1:]:
@@ -348,19 +343,15 @@ def _arguments(
     try:
         shape = np.broadcast_shapes(points.shape[:-1], np.shape(t), lead)
         times = np.broadcast_to(np.asarray(t).astype(dtype, casting="same_kind"), shape)
-        wide: Any = np.abs(times - reference.t0) if window is None else np.asarray(window)
-        wide = np.broadcast_to(wide.astype(dtype, casting="same_kind"), shape)
     except TypeError:
-        raise InputError(f"t or window is not a number: {t!r}, {window!r}") from None
+        raise InputError(f"t is not a number: {t!r}") from None
     except ValueError:
         raise ShapeError(
             f"points of shape {points.shape}, times of shape {np.shape(t)} and the ensemble {lead} do not fit together"
         ) from None
-    if not bool((wide >= 0).all()):
-        raise InputError(f"window is {window!r}, expected numbers at least 0")
     if not bool(np.isfinite(points).all()):
         raise InputError("a point is not finite: the distance from an orbit needs finite points")
-    return np.broadcast_to(points, (*shape, points.shape[-1])), times, wide
+    return np.broadcast_to(points, (*shape, points.shape[-1])), times
 
 
 def _distance(reference: Reference, y: Array, s: Array) -> Array:

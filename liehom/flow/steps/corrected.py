@@ -362,15 +362,6 @@ class Correction:
         To first order in h, forwards and backwards: `RangeSolver.is_near_cone` with the change h rho(psi_1) m of the
         velocity. Equilibria, orbits with a tight frame (where there is no cone) and points at which isotropy makes only
         a fraction of the correction count as far from it.
-
-        Examples
-        --------
-        >>> import numpy as np
-        >>> import liehom as lh
-        >>> field = lh.GeneratorField(lh.defining(lh.so(2, 1)), ["1", "1/4 + m1", "0"])
-        >>> raised = lh.steps.correction(field, lh.Euler(), np.array([1.0, 0.0, 0.0]), order=3)
-        >>> [bool(raised.near_cone(np.array(h))) for h in (0.25, 0.75)]
-        [False, True]
         """
         xp = namespace(self.residual)
         near: BooleanArray = xp.zeros(xp.shape(self.residual), dtype=bool)
