@@ -10,6 +10,7 @@ import warnings
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias, TypeVar, cast, final
 
 import numpy as np
@@ -135,15 +136,12 @@ class ScipyMethod(Compared):
 def compared_methods(
     methods: Methods,
     field: GeneratorField,
+    propagator: Callable[[StepLike | None], Propagator],
     span: Span,
     start: Array,
-    *,
-    exponential: ExponentialLike = "exp",
-    clock: str = "corrected",
-    engine: str = "numpy",
-    max_steps: int = 100_000,
+    max_steps: int,
 ) -> list[Compared]:
-    """The methods of a comparison, with labels that differ."""
+    """The methods of a comparison, with labels that differ, from the propagator of each step."""
     if isinstance(methods, Mapping):
         labelled = [(str(label), method) for label, method in methods.items()]
     else:
@@ -153,8 +151,7 @@ def compared_methods(
     for label, method in labelled:
         peer = _PEER.fullmatch(method.strip()) if isinstance(method, str) else None
         if peer is None:
-            propagator = Propagator(field, method, exponential=exponential, clock=clock, engine=engine)
-            compared.append(StepMethod(label, method, propagator, span, start, max_steps))
+            compared.append(StepMethod(label, method, propagator(method), span, start, max_steps))
         elif peer[1].lower() in PEERS:
             compared.append(ScipyMethod(label, PEERS[peer[1].lower()], field, span, start))
         else:
@@ -407,9 +404,8 @@ def work_precision(
     if isinstance(repeats, bool) or not isinstance(repeats, int | np.integer) or repeats < 1:
         raise InputError(f"repeats is {repeats!r}, expected an integer at least 1")
     positive("max_steps", max_steps)
-    chosen = compared_methods(
-        methods, field, span, start, exponential=exponential, clock=clock, engine=engine, max_steps=max_steps
-    )
+    propagator = partial(Propagator, field, exponential=exponential, clock=clock, engine=engine)
+    chosen = compared_methods(methods, field, propagator, span, start, max_steps)
     runs = [(x, setting) for setting in settings for x in chosen if setting.dt is None or not x.adaptive_only]
     if lazy := [method.label for method in chosen if not any(method is m for m, _ in runs)]:
         raise InputError(f"{', '.join(lazy)}: methods of scipy have no fixed step sizes, give tolerances too")

@@ -37,13 +37,7 @@ from liehom.flow.steps.step import (
 @final
 @dataclass(frozen=True)
 class Euler(OneExponential):
-    """xi = h psi(m): order 1, section 3 of the paper.
-
-    Examples
-    --------
-    >>> Euler().order
-    1
-    """
+    """xi = h psi(m): order 1, section 3 of the paper."""
 
     order = 1
 
@@ -60,13 +54,7 @@ class Euler(OneExponential):
 @final
 @dataclass(frozen=True)
 class BackwardEuler(OneExponential):
-    """xi = h psi(Exp(xi) m, t + h): order 1, implicit.
-
-    Examples
-    --------
-    >>> BackwardEuler().order
-    1
-    """
+    """xi = h psi(Exp(xi) m, t + h): order 1, implicit."""
 
     order = 1
 
@@ -78,13 +66,7 @@ class BackwardEuler(OneExponential):
 @final
 @dataclass(frozen=True)
 class Heun(OneExponential):
-    """xi = (h/2)(psi(m) + psi(Exp(h psi(m)) m)): order 2, the paper's RK2.
-
-    Examples
-    --------
-    >>> Heun().order
-    2
-    """
+    """xi = (h/2)(psi(m) + psi(Exp(h psi(m)) m)): order 2, the paper's RK2."""
 
     order = 2
 

@@ -371,13 +371,6 @@ tree [τ] of order 2: weight 1/3, expected 1/2, defect -1/6; claim order 1, whic
         a = np.stack([array(row) for row in self.a])
         return a, array(self.b), array(self.c), None if self.embedded_b is None else array(self.embedded_b)
 
-    def to_strings(self) -> dict[str, Any]:
-        """The coefficients as strings in the grammar of values: a, b, c and, if it exists, embedded_b."""
-        shown = self.field.format
-        rows = {"b": self.b, "c": self.c} | ({} if self.embedded_b is None else {"embedded_b": self.embedded_b})
-        a = [[shown(x) for x in row] for row in self.a]
-        return {"a": a} | {key: [shown(x) for x in row] for key, row in rows.items()}
-
     def __repr__(self) -> str:
         stages = f"{self.stages} stage{'s' if self.stages > 1 else ''}"
         embedded = "" if self.embedded_order is None else f", embedded order {self.embedded_order}"

@@ -227,7 +227,6 @@ def closed_form(
     exponential: ExponentialLike = "exp",
     constraints: Sequence[Any] | None = None,
     isotropy: Sequence[Any] | None = None,
-    parameters: Sequence[Any] | None = None,
 ) -> ClosedForm:
     """`ClosedForm`: the isotropy correction and the clock that raise a step to a given order, as formulas.
 
@@ -247,8 +246,6 @@ def closed_form(
         rho are skew-symmetric, else none.
     isotropy : sequence of dim g expressions, optional
         If g_m has dimension 1, the generator of g_m in which to write the correction; by default one is computed.
-    parameters : sequence of symbols or names, optional
-        The parameters; other symbols then raise `InputError`.
 
     Raises
     ------
@@ -274,7 +271,7 @@ def closed_form(
     >>> formula.equal(formula.factor[1], f"({h} - w1)*({h} - w2)*({h} - w3)/{v2}"), formula.residual_is_zero
     (True, True)
     """
-    symbols, components = read_symbols(representation, psi, constraints, parameters, isotropy or ())
+    symbols, components = read_symbols(representation, psi, constraints, isotropy or ())
     generator = GeneratorField(representation, symbols.generator(components))
     action = Action(representation, exponential)
     solver = SymbolicRange(action, symbols.field, object_array(symbols.point))

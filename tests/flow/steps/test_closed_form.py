@@ -302,7 +302,7 @@ def test_the_users_own_symbols_and_isotropy_are_used() -> None:
     m = sympy.symbols("m0:3", real=True)
     spring = sympy.Symbol("k", positive=True)
     minus = [-x for x in m]
-    formula = closed_form(spin(), [0, m[2] * spring, 1], lh.Euler(), 2, isotropy=minus, parameters=[spring])
+    formula = closed_form(spin(), [0, m[2] * spring, 1], lh.Euler(), 2, isotropy=minus)
     assert spring in formula.factor[1].free_symbols and formula.isotropy == tuple(minus)
     other = closed_form(spin(), ["0", "k*m2", "1"], lh.Euler(), 2)
     assert other.equal(str(formula.factor[1]), -other.factor[1])
@@ -311,7 +311,6 @@ def test_the_users_own_symbols_and_isotropy_are_used() -> None:
 
 @pytest.mark.parametrize(("psi", "options", "error", "match"), [
     (["m3", "0", "1"], {}, InputError, r"psi\[0\] has the unknown symbol m3"),
-    (["a*m1", "b", "1"], {"parameters": ["a"]}, InputError, r"psi\[1\] has the unknown symbol b"),
     (["m1", "1"], {}, ShapeError, "2 components, expected 3"), (["0.5*m0", "0", "1"], {}, ParseError, r"psi\[0\]"),
     ([0.5, 0, 1], {}, FieldError, r"psi\[0\] is 0.5.*write a fraction"),
     ([sympy.Float(0.5) * M[0], 0, 1], {}, FieldError, "a float"),
@@ -325,7 +324,6 @@ def test_the_users_own_symbols_and_isotropy_are_used() -> None:
     (["m0", "0", "1"], {"isotropy": ["m0", "m1"]}, ShapeError, "2 coefficients"),
     (["m0", "0", "1"], {"isotropy": ["m0", "m1", "1"]}, InputError, "does not generate g_m"),
     (["m0", "0", "1"], {"isotropy": ["0", "0", "0"]}, InputError, "does not generate g_m"),
-    (["m0", "0", "1"], {"parameters": ["m7"]}, InputError, "cannot be a parameter"),
 ])  # fmt: skip
 def test_wrong_input(psi: Any, options: dict[str, Any], error: type[Exception], match: str) -> None:
     with pytest.raises(error, match=match):
