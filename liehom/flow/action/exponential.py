@@ -19,6 +19,7 @@ from liehom.flow.action.maps import (
     FieldMatrix,
     action_entries,
     action_map,
+    applied,
     bracket_map,
     cayley_logarithm,
     connected,
@@ -209,7 +210,7 @@ class SeriesExponential(TrueExponential):
         if type(matrix) is Traced or type(m) is Traced:
             return exponential_action(matrix, m)
         if is_jax(matrix) or is_jax(m):
-            return m + _times(expm1(matrix), m)
+            return m + applied(expm1(matrix), m)
         if matrix.ndim == 2 and m.ndim == 1:
             flat = matrix.ravel()
             size = sqrt(flat.dot(flat))
@@ -221,7 +222,7 @@ class SeriesExponential(TrueExponential):
         far = ~(sizes <= (MAX_NORM_EXTENDED if matrix.dtype == np.longdouble else MAX_NORM))
         if not bool(far.any()):
             return _in_substeps(matrix, m, float(sizes.max(initial=0.0)))
-        wide = m + _times(expm1(matrix.astype(np.longdouble)), m)
+        wide = m + applied(expm1(matrix.astype(np.longdouble)), m)
         moved: Values = wide.astype(np.result_type(matrix, m))
         if bool(far.all()):
             return moved
@@ -242,17 +243,13 @@ class MatrixExponential(TrueExponential):
         if type(matrix) is Traced or type(m) is Traced:
             return exponential_action(matrix, m)
         if is_jax(matrix) or is_jax(m) or matrix.dtype == np.longdouble:
-            return m + _times(expm1(matrix), m)
+            return m + applied(expm1(matrix), m)
         from scipy.linalg import expm
 
         bad: BooleanArray = ~np.isfinite(matrix).all(axis=(-1, -2))
         if not bool(bad.any()):
-            return _times(expm(matrix), m)
-        return np.where(bad[..., None], np.nan, _times(expm(np.where(bad[..., None, None], 0.0, matrix)), m))
-
-
-def _times(matrix: Values, m: Values) -> Values:
-    return (matrix @ m[..., None])[..., 0]
+            return applied(expm(matrix), m)
+        return np.where(bad[..., None], np.nan, applied(expm(np.where(bad[..., None, None], 0.0, matrix)), m))
 
 
 def _in_substeps(matrix: Values, m: Values, size: float) -> Values:
@@ -568,9 +565,6 @@ class Cayley(Exponential):
         if is_exact(x):
             raise InputError("the Cayley transform through the group needs a logarithm: use floats, or series")
         return self._coefficients(cayley_logarithm(self._matrices.left(x)))
-
-    def __repr__(self) -> str:
-        return f"<exponential {self.name}>"
 
 
 def _cayley_increment(matrix: Values, m: Values) -> Values:

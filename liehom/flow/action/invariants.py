@@ -53,7 +53,10 @@ def invariant_polynomials(matrices: Array, degree: int) -> Array:
     count = len(factors)
     place = np.zeros((n,) * degree, dtype=int)
     place[tuple(factors.T)] = columns = np.arange(count)
-    some = matrices if len(matrices) <= ELEMENTS else np.tensordot(_mixing(len(matrices)), matrices, 1)
+    some = matrices
+    if len(matrices) > ELEMENTS:  # coefficients of norm 1
+        rows = np.random.default_rng(0).normal(size=(ELEMENTS, len(matrices)))
+        some = np.tensordot(rows / np.linalg.norm(rows, axis=1, keepdims=True), matrices, 1)
     moved = np.zeros((len(some), count, count))
     for at in range(degree):
         for j in range(n):
@@ -64,12 +67,6 @@ def invariant_polynomials(matrices: Array, degree: int) -> Array:
     flat = moved.reshape(-1, count)
     values, vectors = np.linalg.eigh(flat.T @ flat)
     return vectors[:, values <= FORM_RTOL * max(float(values[-1]), 1.0)]
-
-
-def _mixing(count: int) -> Array:
-    """Coefficients of a few random elements of the algebra, of norm 1."""
-    rows = np.random.default_rng(0).normal(size=(ELEMENTS, count))
-    return rows / np.linalg.norm(rows, axis=1, keepdims=True)
 
 
 def sparsest(basis: Array) -> Array:

@@ -372,6 +372,11 @@ def norms(a: Values) -> Values:
     return xp.sqrt(xp.einsum("...ij,...ij->...", a, a))
 
 
+def applied(a: Values, x: Values) -> Any:
+    """The vectors a x for matrices a (..., n, k) and vectors x (..., k)."""
+    return (a @ x[..., None])[..., 0]
+
+
 def identity(a: Values) -> Values:
     """The identity matrix of the size and dtype of a matrix."""
     return namespace(a).eye(a.shape[-1], dtype=a.dtype)

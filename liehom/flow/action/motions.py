@@ -14,7 +14,7 @@ import numpy as np
 from liehom.base.errors import InputError, ShapeError
 from liehom.base.typing import Array, Values, ValuesLike
 from liehom.flow.action.exponential import rotation_quotients
-from liehom.flow.action.maps import expm1, solve
+from liehom.flow.action.maps import applied, expm1, solve
 from liehom.flow.series.arrays import as_values, is_jax, namespace
 
 TOLERANCE = 1e-6
@@ -50,7 +50,7 @@ class _Motions(ABC):
     @classmethod
     def dexp(cls, x: ValuesLike, y: ValuesLike) -> Values:
         """dexp_x y for tangent vectors x and y: exp(x(t)) moves with the velocity dexp_x(x') from the left."""
-        return _applied(cls._differential(cls._read(x)), cls._read(y))
+        return applied(cls._differential(cls._read(x)), cls._read(y))
 
     @classmethod
     def dexp_inverse(cls, x: ValuesLike, y: ValuesLike) -> Values:
@@ -147,7 +147,7 @@ class SO3(_Motions):
 
     def apply(self, points: ValuesLike) -> Values:
         """R v for points v (..., 3)."""
-        return _applied(self.matrix, _read(points, (3,), "a point"))
+        return applied(self.matrix, _read(points, (3,), "a point"))
 
     def as_quaternion_wxyz(self) -> Values:
         """Unit quaternions (..., 4), scalar part first, of the sign for which the largest entry is positive."""
@@ -320,10 +320,6 @@ def _in_blocks(a: Values, b: Values) -> Values:
     """The matrices [[a, 0], [b, a]]."""
     xp = namespace(a)
     return xp.concatenate([xp.concatenate([a, 0 * a], axis=-1), xp.concatenate([b, a], axis=-1)], axis=-2)
-
-
-def _applied(matrix: Values, x: Values) -> Values:
-    return (matrix @ x[..., None])[..., 0]
 
 
 def _square(x: Values) -> Values:

@@ -11,7 +11,7 @@ import numpy as np
 
 from liehom.base.errors import InputError, TraceError, displayed
 from liehom.base.typing import Real, Values
-from liehom.flow.action.maps import solve
+from liehom.flow.action.maps import applied, solve
 from liehom.flow.action.space import Action
 from liehom.flow.methods.rkmk import RKMK, Stages, sparse_row
 from liehom.flow.methods.runge_kutta import Tableau
@@ -370,35 +370,31 @@ class _ExponentialStep(LocalStep):
         at, rate = self._linear, self._linear.rate
         jacobian: Any = at.jacobian
         phi = _phis(h, jacobian)
-        v = h * _times(phi[0], at.start)
+        v = h * applied(phi[0], at.start)
         if rate is not None:
-            v = v + h * h * _times(phi[1], rate)
+            v = v + h * h * applied(phi[1], rate)
         if self.order == 2:
             return v, None
 
         def rest(u: Values, s: Values) -> Stage:
-            difference = at.value(u, s) - at.start - _times(jacobian, u)
+            difference = at.value(u, s) - at.start - applied(jacobian, u)
             return difference if rate is None else difference - s * rate
 
         if self.order == 3:
-            extra = 2 * h * _times(phi[2], rest(v, h))
+            extra = 2 * h * applied(phi[2], rest(v, h))
             return v + extra, extra
         half = _phis(h / 2, jacobian)
-        p = h / 2 * _times(half[0], at.start)
+        p = h / 2 * applied(half[0], at.start)
         if rate is not None:
-            p = p + h * h / 4 * _times(half[1], rate)
+            p = p + h * h / 4 * applied(half[1], rate)
         d = rest(p, h / 2)
-        e = rest(v + h * _times(phi[0], d), h)
-        extra = h * _times(phi[3], 12 * e - 48 * d)
-        return v + h * _times(phi[2], 16 * d - 2 * e) + extra, extra
+        e = rest(v + h * applied(phi[0], d), h)
+        extra = h * applied(phi[3], 12 * e - 48 * d)
+        return v + h * applied(phi[2], 16 * d - 2 * e) + extra, extra
 
     def estimate(self, h: Values) -> Values:
         """rho(x) m with x the difference of the methods of two orders, for h (..., 1); shape (..., N)."""
         return self.action.infinitesimal(self._solved(h)[1], self.m)
-
-
-def _times(matrix: Stage, v: Stage) -> Stage:
-    return (matrix @ v[..., None])[..., 0]
 
 
 def _phis(h: Values, jacobian: Values) -> list[Any]:

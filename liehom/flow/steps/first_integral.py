@@ -379,11 +379,6 @@ class Conservation:
             inverse = np.linalg.pinv(_double(matrix), rcond=1e-12)
         return (directions @ (inverse @ (target / units)[..., None]))[..., 0]
 
-    def range(self, index: tuple[int, ...] = ()) -> Array:
-        """Orthonormal basis of chi_m(g_m) in W, as columns, shape (k, rank), at the point of this index."""
-        left, sizes, _ = np.linalg.svd(_double(self.matrix[index]))
-        return left[:, : min(int(np.asarray(self.rank)[index]), len(sizes))]
-
     def unreachable(self, index: tuple[int, ...] = ()) -> Array:
         """Covectors z, as rows, shape (wanted - rank, k), with z chi_m = 0 although z DF is not 0 on the orbit.
 
@@ -453,7 +448,7 @@ def conservation_map(
     Returns
     -------
     Conservation
-        Its matrix in an orthonormal basis of g_m, its rank and range, and the combinations that it does not reach.
+        Its matrix in an orthonormal basis of g_m, its rank, and the combinations that it does not reach.
 
     Notes
     -----
