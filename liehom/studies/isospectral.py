@@ -149,24 +149,11 @@ class SymmetricMatrices:
         return [diagonal[i] if i == j else 0 for i, j in zip(*np.triu_indices(self.k), strict=True)]
 
     def isotropy(self, multiplicities: Sequence[int]) -> Subalgebra:
-        """The isotropy subalgebra so(m_1) + ... + so(m_r) of `point`, exact.
-
-        Examples
-        --------
-        >>> SymmetricMatrices(5).isotropy((3, 2)).dimension
-        4
-        """
+        """The isotropy subalgebra so(m_1) + ... + so(m_r) of `point`, exact."""
         return self.representation.isotropy(self.point(multiplicities))
 
     def pair(self, multiplicities: Sequence[int]) -> Pair:
-        """The pair (so(k), isotropy), which `liehom.decide_fullness` decides.
-
-        Examples
-        --------
-        >>> import liehom as lh
-        >>> lh.decide_fullness(SymmetricMatrices(4).pair((2, 1, 1))).full
-        False
-        """
+        """The pair (so(k), isotropy), which `liehom.decide_fullness` decides."""
         return self.representation.pair(self.point(multiplicities))
 
     def is_full(self, multiplicities: Sequence[int]) -> bool:
