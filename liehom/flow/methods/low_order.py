@@ -37,7 +37,13 @@ from liehom.flow.steps.step import (
 @final
 @dataclass(frozen=True)
 class Euler(OneExponential):
-    """xi = h psi(m): order 1, section 3 of the paper."""
+    """xi = h psi(m): order 1, section 3 of the paper.
+
+    Examples
+    --------
+    >>> Euler().order
+    1
+    """
 
     order = 1
 
@@ -54,7 +60,13 @@ class Euler(OneExponential):
 @final
 @dataclass(frozen=True)
 class BackwardEuler(OneExponential):
-    """xi = h psi(Exp(xi) m, t + h): order 1, implicit."""
+    """xi = h psi(Exp(xi) m, t + h): order 1, implicit.
+
+    Examples
+    --------
+    >>> BackwardEuler().order
+    1
+    """
 
     order = 1
 
@@ -66,7 +78,13 @@ class BackwardEuler(OneExponential):
 @final
 @dataclass(frozen=True)
 class Heun(OneExponential):
-    """xi = (h/2)(psi(m) + psi(Exp(h psi(m)) m)): order 2, the paper's RK2."""
+    """xi = (h/2)(psi(m) + psi(Exp(h psi(m)) m)): order 2, the paper's RK2.
+
+    Examples
+    --------
+    >>> Heun().order
+    2
+    """
 
     order = 2
 
