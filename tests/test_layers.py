@@ -66,8 +66,8 @@ ORDER: dict[str, list[str]] = {
             "geodesics"
         ),
         "liehom.flow.action": (
-            "maps exponential custom_exponential expression components frames field motions space "
-            "fingerprint invariants quadrics"
+            "maps exponential custom_exponential expression components frames field motions invariants space "
+            "fingerprint"
         ),
         "liehom.flow.convergence": "reference orders costs",
         "liehom.flow.engines": (

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from numbers import Integral
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -44,6 +45,13 @@ def displayed(value: object) -> str:
 
 class InputError(LiehomError, ValueError):
     """An argument has a wrong value: a parameter out of range, a shape that does not fit, a bad option."""
+
+
+def checked_integer(value: object, what: str, least: int = 1) -> int:
+    """The value as an int, after a check that it is an integer and large enough."""
+    if isinstance(value, bool) or not isinstance(value, Integral) or value < least:
+        raise InputError(f"{what} is an integer at least {least}, got {displayed(value)}")
+    return int(value)
 
 
 class ShapeError(InputError):

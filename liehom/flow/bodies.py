@@ -7,15 +7,14 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
-from inspect import Parameter, signature
 from typing import Any, ClassVar, Unpack, final
 
 import numpy as np
 import numpy.typing as npt
 
-from liehom.base.errors import InputError, ShapeError, displayed
+from liehom.base.errors import InputError, ShapeError
 from liehom.base.typing import Array, IntegerArray, Values
-from liehom.flow.action.components import joined
+from liehom.flow.action.components import joined, parameters_like
 from liehom.flow.action.field import GeneratorField
 from liehom.flow.action.maps import FieldMatrix
 from liehom.flow.action.motions import are_rotations, matrix_to_quaternion, quaternion_to_matrix
@@ -24,8 +23,6 @@ from liehom.flow.engines.arguments import SingleRunOptions
 from liehom.flow.propagation.integration import integrate
 from liehom.flow.run.solution import Solution
 from liehom.flow.steps.step import StepLike
-
-# Inertia tensors as users give them, read as matrices over QQ, and rotations, checked.
 
 SYMMETRY_RTOL = 1e-10
 """Largest difference of I[i, j] and I[j, i], relative to the largest entry."""
@@ -79,8 +76,7 @@ def rotations(attitude: npt.ArrayLike | None) -> Array:
     if q.shape[-1:] == (4,):
         if not np.allclose(np.sum(q * q, axis=-1), 1, rtol=0, atol=ROTATION_ATOL):
             raise InputError("the attitude at time 0 is not a unit quaternion: divide it by its norm")
-        turned: Any = quaternion_to_matrix(q)
-        return turned
+        return np.asarray(quaternion_to_matrix(q))
     if q.shape[-2:] != (3, 3):
         raise ShapeError(
             f"the attitude at time 0 has shape {q.shape}, expected (..., 3, 3), or (..., 4) for quaternions"
@@ -96,8 +92,6 @@ def rotations(attitude: npt.ArrayLike | None) -> Array:
 # momentum is stored in space, where it changes by torques and forces only: p' = Q tau. So the group is a product of
 # rotations, or rigid motions, with translations of the momentum, and a momentum on which nothing acts is constant bit
 # for bit.
-
-POSITIONAL = (Parameter.POSITIONAL_ONLY, Parameter.POSITIONAL_OR_KEYWORD)
 
 
 @final
@@ -183,7 +177,13 @@ class PosedBody(Body):
         self.inertia: Array = tensor.to_numpy()
         self._inertia, self._inverse = FieldMatrix(tensor), FieldMatrix(tensor.inverse())
         self._potential, self._driven = potential, force is not None
-        psi: Any = self._free if force is None else generator_of(force, self._forced, self._force)
+        psi: Any = self._free
+        if force is not None:
+
+            def forced(y: Values, *rest: object) -> Values:
+                return self._forced(y, lambda state: force(state, *rest))
+
+            psi = parameters_like(force, forced, self._force, "state")
         self.field = GeneratorField(space(self._driven), psi)
 
     @abstractmethod
@@ -225,15 +225,7 @@ class PosedBody(Body):
         return self.state(y).velocity
 
     def energy(self, y: npt.ArrayLike | Values | Solution) -> Values:
-        """Kinetic energy, plus the potential if there is one; shape (...,).
-
-        Examples
-        --------
-        >>> import liehom as lh
-        >>> body = lh.bodies.AttitudeBody([1, 2, 4])
-        >>> body.energy(body.start(momentum=[0.0, 2.0, 0.0]))
-        np.float64(1.0)
-        """
+        """Kinetic energy, plus the potential if there is one; shape (...,)."""
         state = self.state(y)
         kinetic = np.sum(state.momentum * state.velocity, axis=-1) / 2
         return kinetic if self._potential is None else kinetic + self._potential(state)
@@ -275,25 +267,6 @@ def along(attitude: Values, v: Values) -> Values:
 def across(attitude: Values, v: Values) -> Values:
     """Q^T v, shape (..., 3), of vectors in space."""
     return np.sum(attitude * v[..., :, None], axis=-2)
-
-
-def generator_of(
-    force: Callable[..., Any], forced: Callable[[Values, Callable[[Any], Any]], Values], what: str
-) -> Callable[..., Values]:
-    """psi with as many parameters as the force; `forced(y, apply)` is psi at y, where apply(state) calls the force."""
-    if not callable(force):
-        raise InputError(f"the {what} is a function of (state), (state, t) or (state, t, args), got {displayed(force)}")
-    parameters = signature(force).parameters.values()
-    needed = [p for p in parameters if p.kind in POSITIONAL and p.default is Parameter.empty]
-    if len(needed) == 1:
-        return lambda y: forced(y, force)
-    if len(needed) == 2:
-        return lambda y, t: forced(y, lambda state: force(state, t))
-    if len(needed) == 3:
-        return lambda y, t, args: forced(y, lambda state: force(state, t, args))
-    raise InputError(
-        f"the {what} has the parameters {signature(force)}: expected (state), (state, t) or (state, t, args)"
-    )
 
 
 def vector_like(value: object, like: Values, what: str, size: int = 3) -> Values:
@@ -491,13 +464,7 @@ class HeavyTop(Body):
         *,
         attitude: npt.ArrayLike | None = None,
     ) -> Array:
-        """States (..., 6) with an angular momentum in the body and the vertical, or the attitude that determines it.
-
-        Examples
-        --------
-        >>> HeavyTop([1, 1, 2], [0, 0, 1]).start([0, 0, 1.0]).tolist()
-        [0.0, 0.0, 1.0, 0.0, 0.0, 1.0]
-        """
+        """States (..., 6) with an angular momentum in the body and the vertical, or the attitude that determines it."""
         m = np.asarray(momentum, dtype=float)
         up = np.asarray(vertical, dtype=float) if attitude is None else rotations(attitude)[..., 2, :]
         if m.shape[-1:] != (3,) or up.shape[-1:] != (3,):
@@ -517,13 +484,7 @@ class HeavyTop(Body):
         return self._inverse(self.momentum(y))
 
     def energy(self, y: npt.ArrayLike | Values | Solution) -> Values:
-        """<m, Om m>/2 + w <Gamma, chi>, shape (...,).
-
-        Examples
-        --------
-        >>> HeavyTop([1, 1, 2], [0, 0, 3]).energy([0, 2.0, 0, 0, 0, 1.0])
-        np.float64(5.0)
-        """
+        """<m, Om m>/2 + w <Gamma, chi>, shape (...,)."""
         y = self.points(y)
         m = y[..., :3]
         return np.sum(m * self._inverse(m), axis=-1) / 2 + np.sum(y[..., 3:] * (self.weight * self.centre), axis=-1)
@@ -673,13 +634,7 @@ class SE3Body(PosedBody):
         momentum: npt.ArrayLike | None = None,
         velocity: npt.ArrayLike | None = None,
     ) -> Array:
-        """States (..., N) with attitude, position, and the momentum or velocity (..., 6) in the body.
-
-        Examples
-        --------
-        >>> SE3Body([1, 2, 3]).start(position=[1.0, 0, 0], velocity=[0, 0, 0, 0, 1.0, 0])[12:].tolist()
-        [0.0, 0.0, 1.0, 0.0, 1.0, 0.0]
-        """
+        """States (..., N) with attitude, position, and the momentum or velocity (..., 6) in the body."""
         mu: Any = np.asarray(one_of(momentum, velocity), dtype=float)
         q, x = rotations(attitude), np.asarray(position, dtype=float)
         if mu.shape[-1:] != (6,) or x.shape[-1:] != (3,):
@@ -705,14 +660,7 @@ class SE3Body(PosedBody):
         return self.state(y).position
 
     def pose(self, y: npt.ArrayLike | Solution) -> Array:
-        """Homogeneous matrices (..., 4, 4) of the pose.
-
-        Examples
-        --------
-        >>> body = SE3Body([1, 1, 1])
-        >>> body.pose(body.start(position=[1.0, 2, 3], momentum=np.zeros(6)))[:, 3].tolist()
-        [1.0, 2.0, 3.0, 1.0]
-        """
+        """Homogeneous matrices (..., 4, 4) of the pose."""
         state = self.state(y)
         pose = np.zeros((*state.position.shape[:-1], 4, 4))
         pose[..., :3, :3], pose[..., :3, 3], pose[..., 3, 3] = state.attitude, state.position, 1.0

@@ -18,7 +18,7 @@ from liehom.exact.scalars.field import Field, Matrix, Scalar
 from liehom.exact.scalars.floating import RR, RankDecision
 from liehom.exact.scalars.function_field import FunctionField, RationalFunction
 from liehom.exact.scalars.grammar import Call, Name, Node, Number, Operation, evaluate, parse
-from liehom.exact.scalars.number_fields import AlgebraicNumber, NumberField, common_field
+from liehom.exact.scalars.number_fields import AlgebraicNumber, common_field
 from liehom.exact.scalars.rational import QQ
 
 __all__ = [
@@ -34,7 +34,6 @@ __all__ = [
     "Name",
     "Node",
     "Number",
-    "NumberField",
     "Operation",
     "QQ",
     "RR",

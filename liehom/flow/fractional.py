@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from inspect import signature
 from typing import Any, TypeAlias, Unpack, final
 
 import numpy as np
@@ -11,7 +10,7 @@ import numpy.typing as npt
 
 from liehom.base.errors import InputError, ShapeError
 from liehom.base.typing import Array, Values
-from liehom.flow.action.components import GeneratorLike
+from liehom.flow.action.components import GeneratorLike, parameters_like
 from liehom.flow.action.field import GeneratorField
 from liehom.flow.door import Representation, defining
 from liehom.flow.engines.arguments import SingleRunOptions
@@ -92,8 +91,7 @@ class LinearFractional:
             flat = [part.reshape((*part.shape[:-2], n * n)) for part in (parts if self.over == "C" else (parts,))]
             return namespace(*flat).concatenate(flat, axis=-1) @ self._coordinates
 
-        more = len(signature(generator).parameters) - 1
-        return (lambda m: psi(m)) if more == 0 else (lambda m, t: psi(m, t)) if more == 1 else psi
+        return parameters_like(generator, psi, "generator", "X")
 
     def start(self, x: npt.ArrayLike) -> Array:
         """The state (..., N) of matrices X (..., p, q), with V = 1."""

@@ -1,4 +1,4 @@
-"""Spins: the Landau-Lifshitz-Gilbert equation, interactions, thermal noise, the macrospin in closed form."""
+"""Spins: the Landau-Lifshitz-Gilbert equation, interactions, thermal noise."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any, TypeAlias, Unpack, final
 import numpy as np
 import numpy.typing as npt
 
-from liehom.base.errors import InputError, ShapeError
+from liehom.base.errors import InputError, ShapeError, checked_integer
 from liehom.base.typing import Array, Real, Values
 from liehom.flow.action.components import joined
 from liehom.flow.action.field import GeneratorField
@@ -23,113 +23,6 @@ from liehom.flow.run.solution import Solution
 from liehom.flow.steps.conserving import Conserving
 from liehom.flow.steps.corrected import Corrected
 from liehom.flow.steps.step import Generator, LocalStep, Step, StepLike, as_step
-
-# The macrospin: one spin in a constant field, with damping, solved in closed form.
-#
-#     m' = -g m x H - a g m x (m x H),   g = gamma/(1 + a^2)
-#
-# With p = <m, H>/|H| and u = a g |H| t, the component along the field is tanh(artanh(p) + u). The component across it
-# turns by the angle g |H| t and has the length 1/cosh(artanh(p) + u).
-
-
-def macrospin(
-    m0: npt.ArrayLike,
-    field: npt.ArrayLike,
-    t: npt.ArrayLike,
-    *,
-    damping: npt.ArrayLike = 0.0,
-    gyromagnetic: npt.ArrayLike = 1.0,
-) -> Array:
-    """The spin at time t in a constant field, in closed form, shape (..., 3).
-
-    Parameters
-    ----------
-    m0 : (..., 3) array_like
-        Unit vectors, the spins at time 0.
-    field : (..., 3) array_like
-        H.
-    t, damping, gyromagnetic : float or array_like of shape (...,)
-        Time, alpha and gamma of `LandauLifshitz`. All arguments are broadcast.
-
-    Returns
-    -------
-    array of shape (..., 3)
-
-    Examples
-    --------
-    A quarter of a turn, counterclockwise about the field; and a spin that switches:
-
-    >>> import numpy as np
-    >>> macrospin([1.0, 0.0, 0.0], [0.0, 0.0, 2.0], np.pi / 4).round(12) + 0.0
-    array([0., 1., 0.])
-    >>> bool(macrospin([0.1, 0.0, -np.sqrt(0.99)], [0.0, 0.0, 1.0], 80.0, damping=0.1)[2] > 0.999)
-    True
-    """
-    spin, h = np.asarray(m0, dtype=float), np.asarray(field, dtype=float)
-    if spin.shape[-1:] != (3,) or h.shape[-1:] != (3,):
-        raise ShapeError(f"a spin of shape {spin.shape} in a field of shape {h.shape}, expected (..., 3) for both")
-    alpha, time = np.asarray(damping, dtype=float), np.asarray(t, dtype=float)
-    size = np.linalg.norm(h, axis=-1)
-    n = h / np.where(size > 0, size, 1.0)[..., None]
-    angle = np.asarray(gyromagnetic, dtype=float) / (1 + alpha**2) * size * time
-    u = alpha * angle
-    p = np.sum(spin * n, axis=-1)
-    across = spin - p[..., None] * n
-    # tanh(artanh(p) + u) = s (a - b e)/(a + b e); the smaller of a and b comes from the component across the field
-    s = np.where(u < 0, -1.0, 1.0)
-    square = np.sum(across * across, axis=-1)
-    a, b = 1 + s * p, 1 - s * p
-    a, b = np.where(s * p < 0, square / np.maximum(b, 1), a), np.where(s * p < 0, b, square / np.maximum(a, 1))
-    e = np.maximum(np.exp(-2 * np.abs(u)), np.finfo(float).tiny)
-    turned = np.cos(angle)[..., None] * across + np.sin(angle)[..., None] * np.cross(n, spin)
-    return (s * (a - b * e) / (a + b * e))[..., None] * n + (2 * np.sqrt(e) / (a + b * e))[..., None] * turned
-
-
-def switching_time(
-    start: float, end: float, *, field: float, anisotropy: float = 0.0, damping: float, gyromagnetic: float = 1.0
-) -> float:
-    """The time in which m.e goes from one value to another, in a field H along the easy axis e, a float.
-
-    Parameters
-    ----------
-    start, end : float
-        Between -1 and 1, both excluded.
-    field, anisotropy : float
-        H and K of `LandauLifshitz`, with |H| != 2 |K|.
-    damping, gyromagnetic : float
-
-    Notes
-    -----
-    With z = m.e the equation is z' = a g (1 - z^2)(H + 2 K z), and the time is an integral of partial fractions. It is
-    negative if m.e had the second value before the first one.
-
-    Examples
-    --------
-    Without anisotropy it is artanh; with H < 2 K a spin close to -e does not switch:
-
-    >>> import numpy as np
-    >>> t = switching_time(-0.5, 0.5, field=2.0, damping=0.1)
-    >>> bool(np.isclose(t, 2 * np.arctanh(0.5) * 1.01 / (0.1 * 2.0)))
-    True
-    >>> switching_time(-0.9, 0.9, field=1.0, anisotropy=1.0, damping=0.1)
-    Traceback (most recent call last):
-    ...
-    liehom.base.errors.InputError: m.e does not go from -0.9 to 0.9: it stays on its side of -0.5
-    """
-    if not (-1 < start < 1 and -1 < end < 1):
-        raise InputError(f"start and end are {start} and {end}, expected numbers between -1 and 1, both excluded")
-    h, k = float(field), float(anisotropy)
-    if abs(h) == abs(2 * k) or damping == 0 or gyromagnetic == 0:
-        raise InputError("there is no such formula for |H| = 2 |K|, and no switching without damping")
-    if (h + 2 * k * start) * (h + 2 * k * end) <= 0:
-        raise InputError(f"m.e does not go from {start} to {end}: it stays on its side of {-h / (2 * k):.6g}")
-
-    def integral(z: float) -> float:
-        outer = -np.log1p(-z) / (2 * (h + 2 * k)) + np.log1p(z) / (2 * (h - 2 * k))
-        return float(outer + (2 * k / (4 * k * k - h * h) * np.log(abs(h + 2 * k * z)) if k else 0.0))
-
-    return (integral(end) - integral(start)) * (1 + damping**2) / (damping * gyromagnetic)
-
 
 # Thermal noise of spins: Brownian increments that depend on a seed alone, and steps in the sense of Stratonovich.
 #
@@ -254,13 +147,7 @@ class SpinLattice:
 
     @property
     def bonds(self) -> int:
-        """Number of pairs of neighbours.
-
-        Examples
-        --------
-        >>> SpinLattice((3, 4)).bonds, SpinLattice((3, 4), False).bonds
-        (24, 17)
-        """
+        """Number of pairs of neighbours."""
         closed = self.periodic if isinstance(self.periodic, tuple) else ()
         return sum((n if p else n - 1) * self.count // n for n, p in zip(self.shape, closed, strict=True))
 
@@ -274,15 +161,7 @@ class SpinLattice:
         return total
 
     def difference(self, m: Values, axis: int) -> Any:
-        """m_{i + 1} - m_{i - 1} along an axis of the lattice; beyond an open end a spin is 0.
-
-        Examples
-        --------
-        >>> import numpy as np
-        >>> m = np.array([1.0, 2.0, 4.0])[:, None] * [0.0, 0.0, 1.0]
-        >>> SpinLattice((3,), False).difference(m, 0)[:, 2].tolist()
-        [2.0, 3.0, -2.0]
-        """
+        """m_{i + 1} - m_{i - 1} along an axis of the lattice; beyond an open end a spin is 0."""
         before, after = self._neighbours(m, axis)
         return after - before
 
@@ -300,16 +179,7 @@ class SpinLattice:
         return np.sum(x, axis=tuple(range(-len(self.shape), 0))) if self.shape else x
 
     def check(self, m: npt.ArrayLike | Values) -> None:
-        """Raise ShapeError unless m has the shape (..., *shape, 3).
-
-        Examples
-        --------
-        >>> import numpy as np
-        >>> SpinLattice((4,)).check(np.zeros((3, 3)))
-        Traceback (most recent call last):
-        ...
-        liehom.base.errors.ShapeError: spins of shape (3, 3), expected (..., 4, 3)
-        """
+        """Raise ShapeError unless m has the shape (..., *shape, 3)."""
         own = (*self.shape, 3)
         if tuple(np.shape(m)[-len(own) :]) != own:
             raise ShapeError(f"spins of shape {np.shape(m)}, expected (..., {', '.join(map(str, own))})")
@@ -444,14 +314,7 @@ class JointSpins:
         return spins.reshape((*spins.shape[: len(spins.shape) - 1 - len(self.lattice.shape)], 3 * self.lattice.count))
 
     def spins(self, point: npt.ArrayLike | Values) -> Any:
-        """Spins (..., *shape, 3) of points (..., 3n), arrays or Jets.
-
-        Examples
-        --------
-        >>> from liehom.studies.instances import LandauLifshitz
-        >>> LandauLifshitz((3, 4)).joint().spins([0.0] * 36).shape
-        (3, 4, 3)
-        """
+        """Spins (..., *shape, 3) of points (..., 3n), arrays or Jets."""
         joint: Any = point if hasattr(point, "shape") else np.asarray(point, dtype=float)
         return joint.reshape((*joint.shape[:-1], *self.lattice.shape, 3))
 
@@ -616,13 +479,7 @@ class LandauLifshitz:
         return (self.exchange != 0 or self.dmi != 0) and self.lattice.bonds > 0
 
     def effective_field(self, m: npt.ArrayLike | Values, time: Real = 0.0) -> Any:
-        """h = -dE/dm at m (..., *shape, 3), an array or Jet of that shape, for a time (..., *shape) or a number.
-
-        Examples
-        --------
-        >>> LandauLifshitz((3,), exchange=2.0, periodic=False).effective_field([[0, 0, 1.0]] * 3)[:, 2].tolist()
-        [2.0, 4.0, 2.0]
-        """
+        """h = -dE/dm at m (..., *shape, 3), an array or Jet of that shape, for a time (..., *shape) or a number."""
         spins = self._spins(m)
         h = self._field_at(spins, time)
         if np.any(self.anisotropy):
@@ -632,13 +489,7 @@ class LandauLifshitz:
         return h + self._coupling(spins) if self.coupled else h
 
     def generator(self, m: npt.ArrayLike | Values, t: Real = 0.0) -> Any:
-        """psi = gamma/(1 + alpha^2) (h + alpha m x h), with m' = psi x m; shape (..., *shape, 3).
-
-        Examples
-        --------
-        >>> LandauLifshitz(applied=[0.0, 0.0, 2.0], damping=0.5).generator([1.0, 0.0, 0.0]).tolist()
-        [0.0, -0.8, 1.6]
-        """
+        """psi = gamma/(1 + alpha^2) (h + alpha m x h), with m' = psi x m; shape (..., *shape, 3)."""
         spins = self._spins(m)
         h = self.effective_field(spins, t)
         if self.spin_torque:
@@ -678,13 +529,7 @@ class LandauLifshitz:
         return self.lattice.total(density)
 
     def energy_rate(self, m: npt.ArrayLike | Values, time: Real = 0.0) -> Any:
-        """dE/dt = -gamma sum_i alpha/(1 + alpha^2) |m_i x h_i|^2 in a constant field without spin torque and noise.
-
-        Examples
-        --------
-        >>> LandauLifshitz(applied=[0, 0, 2.0], damping=0.5).energy_rate([1.0, 0, 0])
-        np.float64(-1.6)
-        """
+        """dE/dt = -gamma sum_i alpha/(1 + alpha^2) |m_i x h_i|^2 in a constant field without spin torque and noise."""
         spins = self._spins(m)
         turning = np.cross(spins, self.effective_field(spins, time))
         rate = self.gyromagnetic * self.damping / (1 + self.damping**2)
@@ -748,14 +593,7 @@ class LandauLifshitz:
         return integrate(self.field, span, spins, step=step, dt=dt, **options)
 
     def noise(self, shape: tuple[int, ...], dt: float, seed: int, parts: int = 1) -> Increments:
-        """The `Increments` that `integrate` uses for spins of a shape (..., *shape, 3), to compare runs on one path.
-
-        Examples
-        --------
-        >>> warm = LandauLifshitz(damping=0.1, temperature=0.5)
-        >>> warm.noise((2, 3), 0.01, seed=4)(0).shape
-        (2, 3)
-        """
+        """The `Increments` that `integrate` uses for spins of a shape (..., *shape, 3), to compare runs on one path."""
         return Increments(shape, dt, seed, parts)
 
     def thermal_step(self, step: Step, noise: Increments, begin: float = 0.0) -> ThermalStep:
@@ -800,10 +638,9 @@ class LandauLifshitz:
             raise InputError(f"{step!r} with noise: its correction expands smooth fields; take Heun() or RKMK('heun')")
         if seed is None:
             seed = int(np.random.SeedSequence().generate_state(1)[0])
-        elif isinstance(seed, bool) or not isinstance(seed, int | np.integer) or seed < 0:
-            raise InputError(f"the seed is {seed!r}, expected an integer at least 0")
+        seed = checked_integer(seed, "the seed", 0)
         size = float(np.asarray(dt))
-        return self.thermal_step(Heun() if step is None else step, self.noise(shape, size, int(seed)), float(span[0]))
+        return self.thermal_step(Heun() if step is None else step, self.noise(shape, size, seed), float(span[0]))
 
     def _check_together(self, step: Step | None, dt: npt.ArrayLike | None, options: SingleRunOptions) -> None:
         """Raise InputError if the options would bring coupled spins to different times."""

@@ -4,7 +4,7 @@ Spheres, rigid bodies, isospectral flows on symmetric matrices, Landau-Lifshitz-
 """
 
 from liehom.flow.bodies import AttitudeBody, BodyState, HeavyTop, PoseState, SE3Body
-from liehom.flow.spins import JointSpins, LandauLifshitz, SpinLattice, macrospin, switching_time
+from liehom.flow.spins import JointSpins, LandauLifshitz, SpinLattice
 from liehom.studies.isospectral import SymmetricMatrices, double_bracket_flow, qr_flow, qr_solution, toda_flow
 from liehom.studies.rigid_body import RigidBody
 from liehom.studies.rigid_body_updates import (
@@ -38,10 +38,8 @@ __all__ = [
     "SymmetricMatrices",
     "Update",
     "double_bracket_flow",
-    "macrospin",
     "qr_flow",
     "qr_solution",
-    "switching_time",
     "toda_flow",
     "update_names",
 ]

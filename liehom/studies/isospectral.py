@@ -9,7 +9,7 @@ from typing import Any, TypeAlias, final, overload
 import numpy as np
 import numpy.typing as npt
 
-from liehom.base.errors import InputError, ShapeError, displayed
+from liehom.base.errors import InputError, ShapeError, checked_integer, displayed
 from liehom.base.typing import Array, IntegerArray, Real, ScalarLike, Values
 from liehom.exact.algebra.core.subalgebra import Subalgebra
 from liehom.exact.algebra.linear.closure import square_matrices
@@ -62,9 +62,7 @@ class SymmetricMatrices:
     __slots__ = ("_columns", "_place", "_rows", "k", "representation")
 
     def __init__(self, k: int) -> None:
-        if isinstance(k, bool) or not isinstance(k, int | np.integer) or k < 2:
-            raise InputError(f"the size of the matrices is an integer at least 2, got {displayed(k)}")
-        self.k: int = int(k)
+        self.k: int = checked_integer(k, "the size of the matrices", 2)
         self.representation: Representation = sym_conjugation(self.k)
         # standard basis of so(k): for i < j the matrix with entry 1 at (j, i)
         self._columns, self._rows = (x.copy() for x in np.triu_indices(self.k, 1))
@@ -151,24 +149,11 @@ class SymmetricMatrices:
         return [diagonal[i] if i == j else 0 for i, j in zip(*np.triu_indices(self.k), strict=True)]
 
     def isotropy(self, multiplicities: Sequence[int]) -> Subalgebra:
-        """The isotropy subalgebra so(m_1) + ... + so(m_r) of `point`, exact.
-
-        Examples
-        --------
-        >>> SymmetricMatrices(5).isotropy((3, 2)).dimension
-        4
-        """
+        """The isotropy subalgebra so(m_1) + ... + so(m_r) of `point`, exact."""
         return self.representation.isotropy(self.point(multiplicities))
 
     def pair(self, multiplicities: Sequence[int]) -> Pair:
-        """The pair (so(k), isotropy), which `liehom.decide_fullness` decides.
-
-        Examples
-        --------
-        >>> import liehom as lh
-        >>> lh.decide_fullness(SymmetricMatrices(4).pair((2, 1, 1))).full
-        False
-        """
+        """The pair (so(k), isotropy), which `liehom.decide_fullness` decides."""
         return self.representation.pair(self.point(multiplicities))
 
     def is_full(self, multiplicities: Sequence[int]) -> bool:

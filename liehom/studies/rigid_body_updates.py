@@ -282,8 +282,7 @@ class Update:
     def __call__(self, m: npt.ArrayLike, dt: npt.ArrayLike) -> Array:
         """The next point, shape (..., 3), for m (..., 3) and step sizes dt (...,)."""
         point = _off_the_origin(points_of(m))
-        after: Any = self._action.act(self._generator(point, dt), point)
-        return after
+        return np.asarray(self._action.act(self._generator(point, dt), point))
 
     def generator(self, m: npt.ArrayLike, dt: npt.ArrayLike) -> Array:
         """xi(m, dt), shape (..., 3)."""
@@ -292,8 +291,7 @@ class Update:
     def _generator(self, m: Array, dt: npt.ArrayLike) -> Array:
         h = step_sizes(dt, m)
         local = self.step.at(self._action, Generator(self.field, 2), m, np.zeros_like(h))
-        xi: Any = local.factors(h)[0]
-        return xi
+        return np.asarray(local.factors(h)[0])
 
     def __repr__(self) -> str:
         return f"<update {self.name} with {self._action.exponential.name}: {self.step!r}>"
@@ -413,8 +411,7 @@ class ClosedFormUpdate:
     def __call__(self, m: npt.ArrayLike, dt: npt.ArrayLike) -> Array:
         """The next point, shape (..., 3), for m (..., 3) and step sizes dt (...,)."""
         point = points_of(m)
-        after: Any = self._action.act(self.generator(point, dt), point)
-        return after
+        return np.asarray(self._action.act(self.generator(point, dt), point))
 
     def generator(self, m: npt.ArrayLike, dt: npt.ArrayLike) -> Array:
         """xi(m, dt), shape (..., 3)."""

@@ -36,6 +36,12 @@ def test_a_trajectory_passes_its_poles():
     np.testing.assert_allclose(np.arctan(turn.value(sol)[:, 0, 0]), np.arctan(np.tan(sol.t)), atol=1e-7)
 
 
+def test_a_generator_takes_args():
+    turn = lh.LinearFractional(1, 1, lambda x, t, args: args * np.array([[0.0, 1.0], [-1.0, 0.0]]) + 0 * x)
+    sol = turn.integrate((0, 1), [[0.0]], args=0.5, rtol=1e-10, atol=1e-10)
+    assert abs(turn.value(sol)[-1, 0, 0] - np.tan(0.5)) < 1e-8
+
+
 def test_infinity_is_said():
     turn = lh.LinearFractional(1, 1, [[0, 1], [-1, 0]])
     assert turn.value([1.0, 0.0]).tolist() == [[np.inf]]

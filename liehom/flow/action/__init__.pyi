@@ -1,13 +1,9 @@
 from liehom.flow.action.custom_exponential import (
-    CustomExponential as CustomExponential,
     exponential_of as exponential_of,
 )
 from liehom.flow.action.exponential import (
     Cayley as Cayley,
     Exponential as Exponential,
-    MatrixExponential as MatrixExponential,
-    Rodrigues as Rodrigues,
-    SeriesExponential as SeriesExponential,
     TrueExponential as TrueExponential,
 )
 from liehom.flow.action.field import (

@@ -104,6 +104,18 @@ def called_as_event(function: Callable[..., Any], args: Pytree, what: str) -> Ev
     return (lambda t, y: function(y, t)) if swapped else function
 
 
+def parameters_like(function: object, inner: Callable[..., Any], what: str, point: str) -> Callable[..., Any]:
+    """The function inner(m, *rest) with the parameters of a user's function of (m), (m, t) or (m, t, args)."""
+    forms = f"({point}), ({point}, t) or ({point}, t, args)"
+    if not callable(function):
+        raise InputError(f"the {what} is a function of {forms}, got {displayed(function)}")
+    positional, _ = _parameters(function) or ([], [])
+    count = sum(p.default is p.empty for p in positional)
+    if not 1 <= count <= 3:
+        raise InputError(f"the {what} has the parameters {inspect.signature(function)}: expected {forms}")
+    return (lambda m: inner(m), lambda m, t: inner(m, t), lambda m, t, args: inner(m, t, args))[count - 1]
+
+
 def guarded(function: Callable[..., Any], what: str, *values: Values | Real) -> Any:
     """The value of a user's function of points and times, which it reads and cannot change."""
     try:

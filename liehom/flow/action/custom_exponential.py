@@ -34,27 +34,7 @@ STEP = 1e-3
 
 @final
 class CustomExponential(Exponential):
-    """An exponential given by a function (x, m) -> Exp(x) m that runs on arrays and Jets.
-
-    Parameters
-    ----------
-    representation : Representation
-    function : callable
-        (x, m) -> Exp(x) m, x of shape (..., dim), m of shape (..., N), written with numpy functions.
-    name : str
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> import liehom as lh
-    >>> rho = lh.defining(lh.so(2))
-    >>> def tangent(x, m):  # rotation by 2 arctan(x/2)
-    ...     turned = x * m[..., ::-1] * [-1, 1]
-    ...     return m + (turned - x * x * m / 2) / (1 + x * x / 4)
-    ...
-    >>> CustomExponential(rho, tangent, "my Cayley").name
-    'my Cayley'
-    """
+    """An exponential given by a function (x, m) -> Exp(x) m that runs on arrays and Jets."""
 
     def __init__(self, representation: Representation, function: ExponentialFunction, name: str = "custom") -> None:
         if not callable(function):

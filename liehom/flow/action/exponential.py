@@ -19,8 +19,10 @@ from liehom.flow.action.maps import (
     FieldMatrix,
     action_entries,
     action_map,
+    applied,
     bracket_map,
     cayley_logarithm,
+    connected,
     expm1,
     identity,
     matrices_of,
@@ -35,9 +37,6 @@ from liehom.flow.series.jet import Jet
 from liehom.flow.series.lie_series import cayley_magnus, dcayley_inverse, dexp, dexp_inverse, magnus, without_constant
 from liehom.flow.series.node import Node
 from liehom.flow.tracing.array import Traced, entire_function, exponential_action
-
-# Exponentials: analytic maps Exp from g to the group with Exp(x) = 1 + x + x^2/2 + ..., acting on V: the interface,
-# and the true one by its Taylor series on the vector and by the matrix exponential.
 
 # up to this norm of rho(x) the series on the vector is cheaper than a matrix exponential of the same precision
 MAX_NORM = 8.0
@@ -71,7 +70,7 @@ class Exponential(ABC):
     >>> rho = lh.defining(lh.so(3))
     >>> class Split(lh.action.Exponential):
     ...     name = "split"
-    ...     exp = SeriesExponential(rho)
+    ...     exp = lh.action.exponential_of(rho, "series")
     ...     def act(self, x, m):
     ...         first, last = x * [0.5, 0, 0], x * [0, 1, 1]
     ...         return self.exp(first, self.exp(last, self.exp(first, m)))
@@ -97,14 +96,6 @@ class Exponential(ABC):
         """The vector d/dt Exp(x + t v) m at t = 0, for arrays; Newton's method in implicit steps uses it.
 
         By default a difference quotient, which has half of the digits.
-
-        Examples
-        --------
-        >>> import numpy as np
-        >>> import liehom as lh
-        >>> exp = lh.Action(lh.defining(lh.so(2))).exponential
-        >>> exp.tangent(np.array([0.0]), np.array([1.0]), np.array([1.0, 0.0])).round(6).tolist()
-        [0.0, 1.0]
         """
         ahead: Any = self.act(x + DIFFERENCE * v, m)
         return (ahead - self.act(x, m)) / DIFFERENCE
@@ -159,7 +150,7 @@ class TrueExponential(Exponential, ABC):
     Examples
     --------
     >>> import liehom as lh
-    >>> exp = SeriesExponential(lh.defining(lh.so(3)))
+    >>> exp = lh.action.exponential_of(lh.defining(lh.so(3)), "series")
     >>> exp(lh.Jet([[0.0, 0, 0], [0, 0, 1.0], [0, 0, 0]]), [1.0, 0.0, 0.0]).coefficients.tolist()
     [[1.0, 0.0, 0.0], [0.0, 0.0, 0.0], [0.0, 0.0, 0.0]]
     """
@@ -172,7 +163,7 @@ class TrueExponential(Exponential, ABC):
         """The Jet exp(rho(x(t))) m(t): the sum of the nested products rho(x)^j m / j!."""
         x = without_constant(x, check=True)
         total = m if isinstance(m, Jet) else Jet.constant(m, x.order)
-        term = total
+        term: Any = total
         for j in range(1, x.order + 1):
             term = self.infinitesimal(x, term)
             term = term / j if j > 1 else term
@@ -203,14 +194,6 @@ class SeriesExponential(TrueExponential):
     The increment is summed separately from m, so that round-off is relative to the increment. For large rho(x), and on
     JAX arrays, exp(rho(x)) - 1 is computed as a matrix, in extended precision where the platform has it. On exact
     numbers exp is the finite sum if rho(x) is nilpotent, else a `FieldError`.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> import liehom as lh
-    >>> exp = SeriesExponential(lh.defining(lh.so(2)))
-    >>> np.round(exp.act(np.array([np.pi / 2]), np.array([1.0, 0.0])), 12)
-    array([0., 1.])
     """
 
     name = "exp (series)"
@@ -227,7 +210,7 @@ class SeriesExponential(TrueExponential):
         if type(matrix) is Traced or type(m) is Traced:
             return exponential_action(matrix, m)
         if is_jax(matrix) or is_jax(m):
-            return m + _times(expm1(matrix), m)
+            return m + applied(expm1(matrix), m)
         if matrix.ndim == 2 and m.ndim == 1:
             flat = matrix.ravel()
             size = sqrt(flat.dot(flat))
@@ -239,7 +222,7 @@ class SeriesExponential(TrueExponential):
         far = ~(sizes <= (MAX_NORM_EXTENDED if matrix.dtype == np.longdouble else MAX_NORM))
         if not bool(far.any()):
             return _in_substeps(matrix, m, float(sizes.max(initial=0.0)))
-        wide = m + _times(expm1(matrix.astype(np.longdouble)), m)
+        wide = m + applied(expm1(matrix.astype(np.longdouble)), m)
         moved: Values = wide.astype(np.result_type(matrix, m))
         if bool(far.all()):
             return moved
@@ -249,16 +232,7 @@ class SeriesExponential(TrueExponential):
 
 @final
 class MatrixExponential(TrueExponential):
-    """expm(rho(x)) m, with the matrix exponential of scipy (`expm1` in extended precision and on JAX arrays).
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> import liehom as lh
-    >>> exp = MatrixExponential(lh.defining(lh.so(2)))
-    >>> np.round(exp.act(np.array([np.pi / 2]), np.array([1.0, 0.0])), 12)
-    array([0., 1.])
-    """
+    """expm(rho(x)) m, with the matrix exponential of scipy (`expm1` in extended precision and on JAX arrays)."""
 
     name = "exp (expm)"
 
@@ -269,17 +243,13 @@ class MatrixExponential(TrueExponential):
         if type(matrix) is Traced or type(m) is Traced:
             return exponential_action(matrix, m)
         if is_jax(matrix) or is_jax(m) or matrix.dtype == np.longdouble:
-            return m + _times(expm1(matrix), m)
+            return m + applied(expm1(matrix), m)
         from scipy.linalg import expm
 
         bad: BooleanArray = ~np.isfinite(matrix).all(axis=(-1, -2))
         if not bool(bad.any()):
-            return _times(expm(matrix), m)
-        return np.where(bad[..., None], np.nan, _times(expm(np.where(bad[..., None, None], 0.0, matrix)), m))
-
-
-def _times(matrix: Values, m: Values) -> Values:
-    return (matrix @ m[..., None])[..., 0]
+            return applied(expm(matrix), m)
+        return np.where(bad[..., None], np.nan, applied(expm(np.where(bad[..., None, None], 0.0, matrix)), m))
 
 
 def _in_substeps(matrix: Values, m: Values, size: float) -> Values:
@@ -345,14 +315,7 @@ class PowerIdentity(NamedTuple):
 
 @final
 class Rodrigues(TrueExponential):
-    """The exponential by Rodrigues' formula, for representations with rho(x)^3 = -q(x) rho(x) or one power higher.
-
-    Examples
-    --------
-    >>> import liehom as lh
-    >>> Rodrigues(lh.defining(lh.so(2, 1))).name
-    'exp (Rodrigues)'
-    """
+    """The exponential by Rodrigues' formula, for representations with rho(x)^3 = -q(x) rho(x) or one power higher."""
 
     def __init__(self, representation: Representation) -> None:
         identity = power_identity(representation.matrices, representation.field)
@@ -532,8 +495,6 @@ class Cayley(Exponential):
 
     Raises
     ------
-    InputError
-        If no such D is known, so that the group is not known to be quadratic.
     SingularError
         On evaluation where the transform is not defined: if D(x) has the real eigenvalue 2 or, if rho is not D, a real
         eigenvalue of size at least 2.
@@ -583,13 +544,10 @@ class Cayley(Exponential):
         return self._coefficients(dcayley_inverse(self._matrices.left(x), self._matrices.left(y)))
 
     def logarithmic_series(self, a: Jet) -> Jet:
-        return self._coefficients(cayley_magnus(self._matrices.left(a)))
+        matrix: Any = self._matrices.left(a)
+        return self._coefficients(cayley_magnus(matrix))
 
-    @overload
-    def _coefficients(self, matrix: Jet) -> Jet: ...
-    @overload
-    def _coefficients(self, matrix: Values) -> Values: ...
-    def _coefficients(self, matrix: Values) -> Values:
+    def _coefficients(self, matrix: Values) -> Any:
         """The x with D(x) = matrix, shape (..., dim)."""
         return self._dual(matrix.reshape((*matrix.shape[:-2], matrix.shape[-1] ** 2)))
 
@@ -607,9 +565,6 @@ class Cayley(Exponential):
         if is_exact(x):
             raise InputError("the Cayley transform through the group needs a logarithm: use floats, or series")
         return self._coefficients(cayley_logarithm(self._matrices.left(x)))
-
-    def __repr__(self) -> str:
-        return f"<exponential {self.name}>"
 
 
 def _cayley_increment(matrix: Values, m: Values) -> Values:
@@ -781,43 +736,22 @@ class BlockExponential(TrueExponential):
 def blocks_of(representation: Representation) -> list[Blocks] | None:
     """The blocks of a representation, if there are several coordinates sets and a closed form holds on each of them."""
     entries = action_entries(representation)
-    roots = _components(entries, representation.size)
-    moved = {j for _, j, _, _ in entries} | {i for _, _, i, _ in entries}
-    if len({roots[i] for i in range(representation.size)}) < 2 or not moved:
+    classes = connected(((i, j) for _, j, i, _ in entries), representation.size)
+    moved = {i for _, *both, _ in entries for i in both}
+    if len(classes) < 2 or not moved or max(map(len, classes)) > MAX_BLOCK:
         return None
-    members: dict[int, list[int]] = {}
-    for i in sorted(moved):
-        members.setdefault(roots[i], []).append(i)
-    if max(map(len, members.values())) > MAX_BLOCK:
-        return None
-    parts: dict[int, list[tuple[int, int, int, Scalar]]] = {root: [] for root in members}
+    block_of = {i: k for k, coordinates in enumerate(classes) for i in coordinates}
+    parts: list[list[tuple[int, int, int, Scalar]]] = [[] for _ in classes]
     for entry in entries:
-        parts[roots[entry[1]]].append(entry)
-    return _grouped(parts, members, representation.field)
+        parts[block_of[entry[1]]].append(entry)
+    return _grouped([(x, y) for x, y in zip(parts, classes, strict=True) if x], representation.field)
 
 
-def _components(entries: Entries, size: int) -> list[int]:
-    """A representative of the set of coordinates that each coordinate is coupled to."""
-    parent = list(range(size))
-
-    def root(i: int) -> int:
-        while parent[i] != i:
-            parent[i] = parent[parent[i]]
-            i = parent[i]
-        return i
-
-    for _, j, i, _ in entries:
-        parent[root(j)] = root(i)
-    return [root(i) for i in range(size)]
-
-
-def _grouped(
-    parts: dict[int, list[tuple[int, int, int, Scalar]]], members: dict[int, list[int]], field: Field
-) -> list[Blocks] | None:
+def _grouped(parts: list[tuple[list[tuple[int, int, int, Scalar]], list[int]]], field: Field) -> list[Blocks] | None:
     """Blocks with equal matrices put together; None if one of them has no closed form."""
     kinds: list[tuple[list[Any], list[list[int]], list[list[int]]]] = []
-    for root, entries in parts.items():
-        generators, coordinates = sorted({a for a, *_ in entries}), members[root]
+    for entries, coordinates in parts:
+        generators = sorted({a for a, *_ in entries})
         number, place = {a: k for k, a in enumerate(generators)}, {i: k for k, i in enumerate(coordinates)}
         own = sorted(((number[a], place[j], place[i], v) for a, j, i, v in entries), key=lambda entry: entry[:3])
         kind = next((x for x in kinds if x[0] == own and len(x[2][0]) == len(coordinates)), None)

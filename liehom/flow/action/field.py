@@ -167,10 +167,6 @@ def _length(v: Values) -> Values:
     return xp.sqrt(xp.einsum("...i,...i->...", v, v))
 
 
-# GeneratorField: a vector field X(m) = rho(psi(m)) m on the orbits of a representation, by its generator psi; if only
-# X is given, psi is the generator of minimal norm.
-
-
 class GeneratorField(Immutable):
     """The vector field X(m, t) = rho(psi(m, t)) m.
 
@@ -321,12 +317,8 @@ class GeneratorField(Immutable):
 
         Raises
         ------
-        ShapeError
-            If m or psi(m, t) has the wrong shape, or psi of one trajectory depends on the points of others.
         TangencyError
             If a vector field is not tangent to the orbits.
-        InputError
-            If a component of psi is not a finite real number; names it. Exceptions raised by psi are not caught.
 
         Examples
         --------

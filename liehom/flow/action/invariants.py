@@ -7,13 +7,13 @@ from collections.abc import Callable, Hashable, Iterable, Sequence
 from fractions import Fraction
 from itertools import combinations, combinations_with_replacement, islice
 from math import lcm
-from typing import Any, cast, final
+from typing import Any, NamedTuple, cast, final
 
 import numpy as np
 
 from liehom.base.errors import SingularError
 from liehom.base.typing import Array, BooleanArray, IntegerArray, Values
-from liehom.flow.action.maps import FieldMap, action_map
+from liehom.flow.action.maps import FieldMap, action_map, connected, matrices_of
 from liehom.flow.door import QQ, RR, Representation
 from liehom.flow.series.arrays import is_lazy, namespace, solve
 from liehom.flow.series.jet import Jet
@@ -53,7 +53,10 @@ def invariant_polynomials(matrices: Array, degree: int) -> Array:
     count = len(factors)
     place = np.zeros((n,) * degree, dtype=int)
     place[tuple(factors.T)] = columns = np.arange(count)
-    some = matrices if len(matrices) <= ELEMENTS else np.tensordot(_mixing(len(matrices)), matrices, 1)
+    some = matrices
+    if len(matrices) > ELEMENTS:  # coefficients of norm 1
+        rows = np.random.default_rng(0).normal(size=(ELEMENTS, len(matrices)))
+        some = np.tensordot(rows / np.linalg.norm(rows, axis=1, keepdims=True), matrices, 1)
     moved = np.zeros((len(some), count, count))
     for at in range(degree):
         for j in range(n):
@@ -64,12 +67,6 @@ def invariant_polynomials(matrices: Array, degree: int) -> Array:
     flat = moved.reshape(-1, count)
     values, vectors = np.linalg.eigh(flat.T @ flat)
     return vectors[:, values <= FORM_RTOL * max(float(values[-1]), 1.0)]
-
-
-def _mixing(count: int) -> Array:
-    """Coefficients of a few random elements of the algebra, of norm 1."""
-    rows = np.random.default_rng(0).normal(size=(ELEMENTS, count))
-    return rows / np.linalg.norm(rows, axis=1, keepdims=True)
 
 
 def sparsest(basis: Array) -> Array:
@@ -101,6 +98,152 @@ def _integral(x: Array) -> Array:
         return np.where(np.abs(x) > FORM_RTOL, x, 0.0)
     common = lcm(*(v.denominator for v in near))
     return np.array([float(v * common) for v in near])
+
+
+# Orbits that are open in a product of quadrics and affine spaces, and the projection onto them.
+#
+# Spheres, hyperboloids, light cones and products of them are orbits of this kind. The coordinates of V fall into blocks
+# such that rho(x) maps V to a sum over the blocks. If a block V_b of dimension n_b has an invariant symmetric form Q_b,
+# all orbits lie on its level sets m^T Q_b m = c_b, of dimension n_b - 1. An orbit whose dimension is that of the
+# product of these level sets is open in it, so that a point of the product near the orbit is a point of the orbit.
+
+
+class Block(NamedTuple):
+    """Coordinates on which the group preserves a symmetric form."""
+
+    indices: tuple[int, ...]
+    form: Array | None  # Q, (n, n); None for the scalar product
+
+
+@final
+class Quadrics:
+    """Level sets of invariant forms of a representation, and the projection onto them."""
+
+    blocks: tuple[Block, ...]
+
+    __slots__ = ("blocks", "size")
+
+    def __init__(self, size: int, blocks: tuple[Block, ...]) -> None:
+        self.size: int = size
+        self.blocks = blocks
+
+    def levels(self, m: Values) -> Values:
+        """The values m^T Q_b m of the forms, shape (..., number of blocks)."""
+        return namespace(m).stack([self._value(block, self._part(block, m)) for block in self.blocks], axis=-1)
+
+    def project(self, m: Values, levels: Values) -> Values:
+        """The point m + lambda Q m of the level sets with the smallest |lambda|, for m (..., N) near them.
+
+        On a sphere it is the multiple of m that has the right norm.
+        """
+        parts = [self._projected(block, self._part(block, m), levels[..., b]) for b, block in enumerate(self.blocks)]
+        if len(parts) == 1 and len(self.blocks[0].indices) == self.size:
+            return parts[0]
+        columns: list[Any] = [m[..., i] for i in range(self.size)]
+        for block, part in zip(self.blocks, parts, strict=True):
+            for j, i in enumerate(block.indices):
+                columns[i] = part[..., j]
+        return namespace(m).stack(columns, axis=-1)
+
+    def _part(self, block: Block, m: Values) -> Values:
+        if len(block.indices) == self.size:
+            return m
+        return namespace(m).stack([m[..., i] for i in block.indices], axis=-1)
+
+    @staticmethod
+    def _value(block: Block, m: Values) -> Values:
+        return (m * (m if block.form is None else times(m, block.form))).sum(axis=-1)
+
+    def _projected(self, block: Block, m: Values, level: Values) -> Values:
+        if block.form is None:
+            return cast(Values, m * _to_level((m * m).sum(axis=-1), level)[..., None])
+        gradient = times(m, block.form)
+        square, missing = (gradient * gradient).sum(axis=-1), level - (m * gradient).sum(axis=-1)
+        # (m + x g)^T Q (m + x g) = level is a quadratic equation in x
+        share, curvature = missing / square, self._value(block, gradient) / square
+        return m + (share / (1 + namespace(m).sqrt(1 + share * curvature)))[..., None] * gradient
+
+
+NEAR_LEVEL = 4e-3
+"""Relative distance of |m|^2 to its level up to which the root of their quotient is a polynomial of degree 6."""
+ROOT_SERIES = (-1 / 2, 3 / 8, -5 / 16, 35 / 128, -63 / 256, 231 / 1024)
+"""Taylor coefficients of (1 + r)^(-1/2)."""
+
+
+def _to_level(square: Values, level: Values) -> Values:
+    """The root of level / square. Compiled code takes a polynomial in blocks of lanes that are all near the level."""
+    if not isinstance(square, Traced) or not square.tape.branching:
+        return cast(Values, namespace(square).sqrt(level / square))
+    r = square / level - 1.0
+    a, b, c, d, e, f = ROOT_SERIES
+    near = 1.0 + r * ((a + b * r) + (r * r) * ((c + d * r) + (r * r) * (e + f * r)))
+
+    def exact(far: Traced, square: Traced, near: Traced) -> tuple[list[Traced], Values]:
+        return [far, square, cast(Traced, np.where(far, np.sqrt(level / square), near))], np.zeros((), bool)
+
+    return while_loop(exact, [~(np.abs(r) <= NEAR_LEVEL), square, near], square.tape, 1, guarded=True)[2]
+
+
+def quadric_orbits(representation: Representation, dimension: int | IntegerArray, points: Array) -> Quadrics | None:
+    """The `Quadrics` in whose level sets the orbits of points are open, or None if there are none."""
+    matrices = matrices_of(representation)
+    moving = np.abs(matrices).max(axis=(0, 2), initial=0.0) > 0  # the other coordinates are constant
+    linked = np.argwhere((np.abs(matrices).max(axis=0, initial=0.0) > 0) & moving & moving[:, None])
+    parts = [part for part in connected(linked.tolist(), len(moving)) if moving[part[0]]]
+    dimensions = np.unique(np.asarray(dimension))
+    if len(dimensions) != 1:
+        return None
+    missing = int(moving.sum()) - int(dimensions[0])
+    if not 0 <= missing <= len(parts):
+        return None
+    blocks = tuple(block for part in parts if (block := _with_form(matrices, part)) is not None) if missing else ()
+    smooth = len(blocks) == missing and _are_smooth(blocks, np.asarray(points, dtype=float))
+    return Quadrics(representation.size, blocks) if smooth else None
+
+
+def _with_form(matrices: Array, indices: list[int]) -> Block | None:
+    """The block with an invariant form, or None if it has none or depends on constant coordinates."""
+    if np.abs(np.delete(matrices[:, indices], indices, axis=2)).max(initial=0.0) > 0:
+        return None
+    inside = matrices[:, indices][:, :, indices]
+    size = float(np.abs(inside).max(initial=0.0))
+    if np.abs(inside + np.swapaxes(inside, 1, 2)).max(initial=0.0) <= FORM_RTOL * size:
+        return Block(tuple(indices), None)
+    form = invariant_form(inside / size) if len(indices) <= LARGEST_SIZE[2] else None
+    return None if form is None else Block(tuple(indices), form)
+
+
+def invariant_form(matrices: Array) -> Array | None:
+    """An invariant symmetric form Q, of largest entry 1, by the kernel of Q -> A^T Q + Q A; None if there is none.
+
+    Of several forms it is the one nearest to the scalar product.
+    """
+    n = matrices.shape[-1]
+    basis = invariant_polynomials(matrices, 2)
+    if not basis.shape[1]:
+        return None
+    first, second = monomials(n, 2).T
+    nearest = basis @ (basis.T @ (first == second).astype(float))
+    if np.abs(nearest).max() <= GRADIENT_RTOL:
+        nearest = basis[:, 0]
+    form = np.zeros((n, n))
+    form[first, second] = nearest
+    form = (form + form.T) / np.abs(form + form.T).max()
+    near = np.array([float(Fraction(float(x)).limit_denominator(DENOMINATOR)) for x in form.ravel()]).reshape(n, n)
+    form = near if np.abs(form - near).max() <= FORM_RTOL else form
+    defect = np.abs(np.swapaxes(matrices, 1, 2) @ form + form @ matrices).max()
+    return form if defect <= FORM_RTOL else None
+
+
+def _are_smooth(blocks: tuple[Block, ...], points: Array) -> bool:
+    """Whether the gradients Q m of the forms are not near 0 at points (..., N)."""
+    for block in blocks:
+        part = points[..., list(block.indices)]
+        form: Array = np.eye(part.shape[-1]) if block.form is None else block.form
+        size = np.linalg.norm(form, 2) * np.linalg.norm(part, axis=-1)
+        if not bool((np.linalg.norm(part @ form, axis=-1) > GRADIENT_RTOL * size).all()):
+            return False
+    return True
 
 
 # The landing of a point that is near an orbit.

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterable
 from math import ceil, log, log2
-from typing import Any, Literal, TypeVar, final, overload
+from typing import Any, Literal, TypeVar, final
 
 import numpy as np
 
@@ -82,12 +82,6 @@ class FieldMap:
         """The coefficients v_ijk as floats, shape (a, b, c)."""
         return self._floating.tensor()
 
-    @overload
-    def __call__(self, x: Jet, y: ValuesLike | Jet) -> Jet: ...
-    @overload
-    def __call__(self, x: ValuesLike, y: Jet) -> Jet: ...
-    @overload
-    def __call__(self, x: ValuesLike, y: ValuesLike) -> Values: ...
     def __call__(self, x: ValuesLike, y: ValuesLike) -> Values:
         """B(x, y) for x (..., a) and y (..., b): array or Jet of shape (..., c)."""
         if isinstance(x, Jet):
@@ -112,10 +106,6 @@ class FieldMap:
             return zeros(a, (*np.broadcast_shapes(a.shape[:-1], b.shape[:-1]), self.shape[2])) if a.size else None
         return None
 
-    @overload
-    def left(self, x: Jet) -> Jet: ...
-    @overload
-    def left(self, x: ValuesLike) -> Values: ...
     def left(self, x: ValuesLike) -> Values:
         """The matrix of y -> B(x, y), shape (..., c, b)."""
         x = x if isinstance(x, Jet) else _array(x)
@@ -124,10 +114,6 @@ class FieldMap:
             return (x @ self._table).reshape(*x.shape[:-1], self.shape[1], self.shape[2]).swapaxes(-1, -2)
         return self._matrix(x, "left")
 
-    @overload
-    def right(self, y: Jet) -> Jet: ...
-    @overload
-    def right(self, y: ValuesLike) -> Values: ...
     def right(self, y: ValuesLike) -> Values:
         """The matrix of x -> B(x, y), shape (..., c, a)."""
         y = y if isinstance(y, Jet) else _array(y)
@@ -276,10 +262,6 @@ class FieldMatrix:
         self._exact = exact.T if field.exact else self._floating
         self._rest = rest.T if rest.any() else None
 
-    @overload
-    def __call__(self, x: Jet) -> Jet: ...
-    @overload
-    def __call__(self, x: ValuesLike) -> Values: ...
     def __call__(self, x: ValuesLike) -> Values:
         """M x for x (..., n), array or Jet."""
         values: Any = x
@@ -331,6 +313,24 @@ def action_entries(representation: Representation) -> list[tuple[int, int, int, 
     ]
 
 
+def connected(pairs: Iterable[Iterable[int]], size: int) -> list[list[int]]:
+    """The classes of the numbers below a size that pairs connect, each in ascending order, by their least elements."""
+    parent = list(range(size))
+
+    def root(i: int) -> int:
+        while parent[i] != i:
+            parent[i] = parent[parent[i]]
+            i = parent[i]
+        return i
+
+    for i, j in pairs:
+        parent[root(i)] = root(j)
+    classes: dict[int, list[int]] = {}
+    for i in range(size):
+        classes.setdefault(root(i), []).append(i)
+    return list(classes.values())
+
+
 def bracket_map(representation: Representation) -> FieldMap:
     """The bilinear map (x, y) -> [x, y] on coefficient vectors."""
     constants = representation.algebra.structure_constants()
@@ -370,6 +370,11 @@ def norms(a: Values) -> Values:
         return np.sqrt(flat.dot(flat))
     xp = namespace(a)
     return xp.sqrt(xp.einsum("...ij,...ij->...", a, a))
+
+
+def applied(a: Values, x: Values) -> Any:
+    """The vectors a x for matrices a (..., n, k) and vectors x (..., k)."""
+    return (a @ x[..., None])[..., 0]
 
 
 def identity(a: Values) -> Values:

@@ -6,15 +6,17 @@ from __future__ import annotations
 
 from copy import copy
 from dataclasses import dataclass
-from typing import final, overload
+from fractions import Fraction
+from typing import Any, NamedTuple, final, overload
 
 import numpy as np
 
 from liehom.base.errors import InputError, ShapeError, displayed
-from liehom.base.typing import IntegerArray, Values, ValuesLike
+from liehom.base.typing import Array, BooleanArray, IntegerArray, Values, ValuesLike
 from liehom.flow.action.custom_exponential import ExponentialLike, exponential_of
 from liehom.flow.action.exponential import Exponential
 from liehom.flow.action.frames import InnerProduct, TightFrame, inner_product, orthogonal_decomposition
+from liehom.flow.action.invariants import GRADIENT_RTOL, LARGEST_SIZE, invariant_form
 from liehom.flow.action.maps import FieldMap, action_map, bracket_map, matrices_of
 from liehom.flow.door import Representation, copies_of
 from liehom.flow.series.arrays import is_jax, namespace
@@ -39,6 +41,10 @@ class Action:
         (x, m) -> rho(x) m.
     bracket : function
         (x, y) -> [x, y], as steps of order 3 and more need it.
+    max_norm : float
+        The largest Frobenius norm of rho(x) for x in an orthonormal basis of g.
+    tight_frame : TightFrame or None
+        The data of orbits on which all singular values agree; see `with_tight_frame`.
 
     Examples
     --------
@@ -53,15 +59,9 @@ class Action:
     representation: Representation
 
     __slots__ = (
-        "_basis",
-        "_size",  # behind `max_norm`
-        "bracket",
-        "even",  # behind `tight_frame`
-        "exponential",
-        "infinitesimal",
-        "inner_product",
-        "representation",
-    )
+        "_basis", "bracket", "exponential", "infinitesimal", "inner_product", "max_norm", "representation",
+        "tight_frame",
+    )  # fmt: skip
 
     def __init__(self, representation: Representation, exponential: ExponentialLike = "exp") -> None:
         if not isinstance(representation, Representation):
@@ -72,30 +72,20 @@ class Action:
         self.bracket: FieldMap = bracket_map(representation)
         self.inner_product: InnerProduct = inner_product(representation)
         self._basis = self.inner_product.orthonormal_basis()
-        self.even: TightFrame | None = None
-        self._size: float
+        self.tight_frame: TightFrame | None = None
+        self.max_norm: float
         copies = copies_of(representation)
         if copies is not None:
-            self._size = Action(copies.single).max_norm
+            self.max_norm = Action(copies.single).max_norm
             return
         shape = (representation.algebra.dimension, representation.size**2)
         tensor = matrices_of(representation).reshape(shape)
-        self._size = float(np.linalg.norm(self._basis.T @ tensor, axis=1).max(initial=0.0))
-
-    @property
-    def tight_frame(self) -> TightFrame | None:
-        """The data of orbits on which all singular values agree, or None; see `with_tight_frame`."""
-        return self.even
+        self.max_norm = float(np.linalg.norm(self._basis.T @ tensor, axis=1).max(initial=0.0))
 
     @property
     def dimension(self) -> int:
         """Dimension of the algebra."""
         return self.infinitesimal.shape[0]
-
-    @property
-    def max_norm(self) -> float:
-        """The largest Frobenius norm of rho(x) for x in an orthonormal basis of g."""
-        return self._size
 
     @overload
     def act(self, x: Jet, m: ValuesLike) -> Jet: ...
@@ -128,8 +118,8 @@ class Action:
         >>> lh.Action(lh.defining(lh.so(3))).isotropy_frame(np.array([0, 0, 1.0]), 2).basis.shape
         (3, 1)
         """
-        if self.even is not None and not is_jax(m):
-            return self._frame_of_tight(self.even, m, orbit_dimension)
+        if self.tight_frame is not None and not is_jax(m):
+            return self._frame_of_tight(self.tight_frame, m, orbit_dimension)
         if type(m) is Traced:
             return self._branch_free_frame(m, int(np.max(orbit_dimension)))
         xp = namespace(m)
@@ -157,7 +147,7 @@ class Action:
         Its isotropy frames have no basis of g_m, and the standard basis of V in place of a tangent basis.
         """
         action = copy(self)
-        action.even = frame
+        action.tight_frame = frame
         return action
 
     def _frame_of_tight(self, tight: TightFrame, m: Values, orbit_dimension: int | IntegerArray) -> IsotropyFrame:
@@ -218,3 +208,162 @@ def _refined(columns: Values, kernel: Values, tangent: Values, lift: Values) -> 
 def _towards_orthonormal(a: Values) -> Values:
     """The factor (3 - A^T A) / 2: A times it has columns closer to orthonormal ones, and the same zero columns."""
     return (3 * np.eye(a.shape[-1], dtype=a.dtype) - np.swapaxes(a, -1, -2) @ a) / 2
+
+
+# The inverse of x -> rho(x) m in closed form, on orbits on which all its singular values agree.
+#
+# Let K be an invariant symmetric form on V and G the inner product on g, with A = [rho(e_1) m, ..., rho(e_r) m]. If
+#
+#     A G^-1 A^T K A = lambda A,      lambda = tr(A G^-1 A^T K) / d,      d the dimension of the orbit,
+#
+# then B = G^-1 A^T K / lambda is a right inverse of A on the tangent space, and B A is the projector along the isotropy
+# algebra. This is so if the isotropy acts irreducibly on the tangent space, as on spheres, projective spaces and other
+# irreducible symmetric orbits.
+
+TIGHT_RTOL = 1e-11
+"""Largest defect of the condition, relative to lambda and the largest entry of A."""
+SAMPLES = 16
+"""Number of points at least that are moved along their orbits; fewer initial points are used several times."""
+
+
+class TightInverse(NamedTuple):
+    """Data of B = G^-1 A^T K / lambda."""
+
+    form: Array  # K, (N, N)
+    gram_inverse: Array  # G^-1, (dim g, dim g)
+    trace: Array  # (N, N): the form m -> tr(A G^-1 A^T K) / d, which is lambda
+    constant: bool  # whether lambda is constant along orbits
+
+    def over(self, m: Values) -> Values:
+        """1 / lambda at points m (..., N), shape (...,); for a tracer a constant of the trajectory if it is one."""
+        trace = self.trace
+
+        def inverse(points: Values) -> Values:
+            return 1.0 / ((points @ trace) * points).sum(axis=-1)
+
+        if self.constant and isinstance(m, Traced):
+            return Traced(m.tape, m.tape.trajectory_constant(inverse))
+        return inverse(m)
+
+    def lifted(self, action: Action, m: Values, v: Values, over: Values) -> Values:
+        """B v at the point m, shape (..., dim g), for v of shape (..., N) and 1 / lambda of shape (...,)."""
+        return (action.infinitesimal.right_transposed(m, v @ self.form) @ self.gram_inverse) * over[..., None]
+
+
+def tight_inverse(action: Action, points: Array, rank: int) -> TightInverse | None:
+    """The inverse on the orbits of points, all of one dimension, or None if it has no closed form."""
+    size = action.representation.size
+    flat = points.reshape(-1, size)
+    if rank < 1 or not len(flat) or size > LARGEST_SIZE[2]:
+        return None
+    matrices = matrices_of(action.representation)
+    form = invariant_form(matrices / max(float(np.abs(matrices).max(initial=0.0)), 1e-300))
+    if form is None:
+        return None
+    gram_inverse = np.linalg.inv(action.inner_product.matrix).astype(np.float64)
+    corners = np.asarray(action.infinitesimal.right(np.eye(size)))
+    trace = (corners @ gram_inverse).reshape(size, -1) @ (form.T @ corners).reshape(size, -1).T / rank
+    inverse = TightInverse(form, gram_inverse, (trace + trace.T) / 2, action.inner_product.invariant)
+    if not inverse.constant:
+        rows = np.arange(max(len(flat), SAMPLES)) % len(flat)
+        x = np.random.default_rng(0).normal(size=(len(rows), action.dimension)) / max(1.0, action.max_norm)
+        flat = np.concatenate([flat, np.asarray(action.act(x, flat[rows]))])
+    return inverse if _holds(action, inverse, flat) else None
+
+
+def _holds(action: Action, inverse: TightInverse, points: Array) -> bool:
+    """Whether A G^-1 A^T K A = lambda A with lambda other than 0 at points (L, N), to round-off."""
+    points = points / np.abs(points).max(axis=-1, keepdims=True)  # the condition is that of all multiples of a point
+    columns = action.infinitesimal.right(points)
+    scale = np.abs(over := ((points @ inverse.trace) * points).sum(axis=-1))
+    square = columns @ inverse.gram_inverse @ np.swapaxes(columns, 1, 2)
+    # lambda is at most |K| |A G^-1 A^T|, and 0 for a form that vanishes on the tangent space
+    least = GRADIENT_RTOL * np.linalg.norm(inverse.form, 2) * np.linalg.norm(square, axis=(1, 2))
+    defect = np.abs(square @ inverse.form @ columns - over[:, None, None] * columns).max(axis=(1, 2), initial=0.0)
+    return bool(
+        ((scale > least) & (defect <= TIGHT_RTOL * scale * np.abs(columns).max(axis=(1, 2), initial=0.0))).all()
+    )
+
+
+POINTS_AT_ONCE = 4096
+"""Points whose matrices are in memory at once."""
+OWN_STREAM = 20011
+"""Second word of the seed: points that a caller drew with the same seed must not be the random tangent vectors too."""
+
+
+def tight_frame(action: Action, points: Array, rank: int, seed: int = 0) -> TightFrame | None:
+    """The tight frame of the orbits of points, all of one dimension, or None if their singular values differ.
+
+    Both conditions, on the singular values of A and on the action of the isotropy on tangent vectors, are identities
+    between polynomials. An orbit of a connected group is irreducible, so such an identity holds on all of it if it
+    holds at a random point of it. It says nothing about another orbit. Therefore the conditions are checked, to
+    round-off, on the orbit of each of the points, and `isotropy` must be one number for all of them. Where the group
+    acts by orthogonal matrices on V and on g, both conditions hold on a whole orbit if they hold at one point of it,
+    and the points themselves are used. Otherwise they are moved by random elements of the group.
+    """
+    if rank < 2 or not len(points):
+        return None
+    points = points / np.abs(points).max(axis=-1, keepdims=True)  # the conditions are of degree 3 in them
+    rng = np.random.default_rng((seed, OWN_STREAM))
+    basis = action.inner_product.orthonormal_basis()
+    rows = np.arange(max(len(points), SAMPLES)) % len(points)
+    mu, symmetric, orthogonal = None, True, _acts_orthogonally(action)
+    for first in range(0, len(rows), POINTS_AT_ONCE):
+        some = points[rows[first : first + POINTS_AT_ONCE]]
+        if not bool(is_tight(action.infinitesimal.right(some) @ basis, rank).all()):
+            return None
+        if not orthogonal:
+            x = rng.normal(size=(len(some), action.dimension))
+            some = np.asarray(action.act(x / max(1.0, float(action.max_norm)), some))
+            if not bool(is_tight(action.infinitesimal.right(some) @ basis, rank).all()):
+                return None
+        constant = _isotropy_constant(action, some, rank, rng, mu)
+        if constant is None:
+            return None
+        mu, symmetric = constant[0], symmetric and constant[1]
+    if mu is None:
+        return None
+    inverse: Any = np.linalg.inv(action.inner_product.matrix)
+    corners = action.infinitesimal.right(np.eye(points.shape[-1]))
+    trace = np.einsum("pia,ab,qib->pq", corners, inverse, corners)
+    near = float(Fraction(mu).limit_denominator(256))
+    return TightFrame(trace, near if abs(near - mu) <= 1e-12 * mu else mu, inverse, symmetric)
+
+
+def _acts_orthogonally(action: Action) -> bool:
+    """Whether the matrices rho(e_i) are skew-symmetric and the inner product on g is Ad-invariant."""
+    matrices = action.infinitesimal.right(np.eye(action.infinitesimal.shape[1]))  # [j, :, i]: rho(e_i) e_j
+    defect = np.abs(matrices + np.swapaxes(matrices, 0, 1)).max(initial=0.0)
+    return action.inner_product.invariant and bool(defect <= TIGHT_RTOL * np.abs(matrices).max(initial=0.0))
+
+
+def _isotropy_constant(
+    action: Action, points: Array, rank: int, rng: np.random.Generator, before: float | None
+) -> tuple[float, bool] | None:
+    """`isotropy` and `symmetric` of a `TightFrame` at points; None unless `isotropy` is one number (`before`)."""
+    basis = action.inner_product.orthonormal_basis()
+    columns = action.infinitesimal.right(points) @ basis
+    square = np.sum(columns * columns, axis=(-2, -1))[:, None, None] / rank
+    tangent = columns @ np.swapaxes(columns, -1, -2) / square
+    kernel = np.eye(columns.shape[-1]) - np.swapaxes(columns, -1, -2) @ columns / square
+    u = (tangent @ rng.normal(size=(*points.shape, 1)))[..., 0]
+    u = u / np.sqrt(np.sum(u * u, axis=-1, keepdims=True))
+    across = action.infinitesimal.right(u) @ basis @ kernel
+    squares = across @ np.swapaxes(across, -1, -2)
+    normal = tangent - u[:, :, None] * u[:, None, :]
+    mu = float(np.trace(squares[0]) / (rank - 1)) if before is None else before
+    if not (mu > TIGHT_RTOL and float(np.abs(squares - mu * normal).max()) <= TIGHT_RTOL * max(mu, 1.0)):
+        return None
+    r = (tangent @ rng.normal(size=(*points.shape, 1)))[..., 0]
+    turned = np.swapaxes(action.infinitesimal.right(u) @ basis, -1, -2) @ r[..., None]
+    outside = np.abs(turned - kernel @ turned).max()
+    return mu, bool(outside <= TIGHT_RTOL * max(1.0, float(np.abs(turned).max())))
+
+
+def is_tight(matrix: Values, rank: int) -> BooleanArray:
+    """Mask, shape (...,), of the matrices with A A^T A = lambda A, lambda = tr(A A^T) / rank."""
+    a = np.ascontiguousarray(np.moveaxis(np.asarray(matrix), (-2, -1), (0, 1)))  # sums over all matrices at once
+    square = np.einsum("pq...,pq...->...", a, a) / rank
+    left = np.einsum("pr...,qr...->pq...", a, a)
+    defect = np.einsum("pr...,rq...->pq...", left, a) - square * a
+    return np.abs(defect).max(axis=(0, 1)) <= TIGHT_RTOL * (square * np.abs(a).max(axis=(0, 1)))

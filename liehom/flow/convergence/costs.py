@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import os
 import platform
 import re
 import time
@@ -11,16 +10,25 @@ import warnings
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias, TypeVar, cast, final
 
 import numpy as np
 import numpy.typing as npt
 
 from liehom.base.errors import ConvergenceError, InputError, LiehomError, LimitError, SeriesError, ShapeError, displayed
-from liehom.base.objects import DisplayedTable, provider
+from liehom.base.objects import provider
 from liehom.base.typing import Array
 from liehom.flow.action.field import GeneratorField, check_point
-from liehom.flow.convergence.orders import MARGIN, NAN, csv_file, errors_of, floor_of, reference_for, root_mean_square
+from liehom.flow.convergence.orders import (
+    MARGIN,
+    NAN,
+    MeasuredTable,
+    errors_of,
+    floor_of,
+    reference_for,
+    root_mean_square,
+)
 from liehom.flow.convergence.reference import Reference
 from liehom.flow.engines.arguments import positive
 from liehom.flow.propagation.propagator import Propagator, engine_of, without_order_warning
@@ -65,10 +73,7 @@ class Compared(ABC):
 
     label: str
     compiles: bool = False
-
-    def takes(self, setting: Setting) -> bool:
-        """Whether the method is run with this setting."""
-        return True
+    adaptive_only: bool = False  # whether it has no fixed step sizes
 
     @abstractmethod
     def run(self, setting: Setting) -> Outcome:
@@ -103,12 +108,11 @@ class StepMethod(Compared):
 class ScipyMethod(Compared):
     """A method of scipy's solve_ivp on m' = X(m, t), all trajectories of an ensemble as one system."""
 
+    adaptive_only = True
+
     def __init__(self, label: str, name: str, field: GeneratorField, span: Span, start: Array) -> None:
         self.label = label or f"scipy {name}"
         self._name, self._field, self._span, self._start = name, field, span, start.astype(float)
-
-    def takes(self, setting: Setting) -> bool:
-        return setting.tolerance is not None
 
     def run(self, setting: Setting) -> Outcome:
         from scipy.integrate import solve_ivp
@@ -132,15 +136,12 @@ class ScipyMethod(Compared):
 def compared_methods(
     methods: Methods,
     field: GeneratorField,
+    propagator: Callable[[StepLike | None], Propagator],
     span: Span,
     start: Array,
-    *,
-    exponential: ExponentialLike = "exp",
-    clock: str = "corrected",
-    engine: str = "numpy",
-    max_steps: int = 100_000,
+    max_steps: int,
 ) -> list[Compared]:
-    """The methods of a comparison, with labels that differ."""
+    """The methods of a comparison, with labels that differ, from the propagator of each step."""
     if isinstance(methods, Mapping):
         labelled = [(str(label), method) for label, method in methods.items()]
     else:
@@ -150,8 +151,7 @@ def compared_methods(
     for label, method in labelled:
         peer = _PEER.fullmatch(method.strip()) if isinstance(method, str) else None
         if peer is None:
-            propagator = Propagator(field, method, exponential=exponential, clock=clock, engine=engine)
-            compared.append(StepMethod(label, method, propagator, span, start, max_steps))
+            compared.append(StepMethod(label, method, propagator(method), span, start, max_steps))
         elif peer[1].lower() in PEERS:
             compared.append(ScipyMethod(label, PEERS[peer[1].lower()], field, span, start))
         else:
@@ -160,9 +160,6 @@ def compared_methods(
     if not compared or len(set(labels)) < len(labels):
         raise InputError(f"expected methods with different labels, got {labels}: give a mapping of labels to steps")
     return compared
-
-
-# WorkPrecisionTable: errors and costs of several methods on one problem, one row for each run.
 
 
 class WorkPrecisionRow(NamedTuple):
@@ -212,7 +209,7 @@ class WorkPrecisionRow(NamedTuple):
 
 @final
 @dataclass(frozen=True, slots=True, repr=False)
-class WorkPrecisionTable(DisplayedTable):
+class WorkPrecisionTable(MeasuredTable):
     """Errors and costs of several methods on one problem; the result of `work_precision`.
 
     Attributes
@@ -263,28 +260,6 @@ class WorkPrecisionTable(DisplayedTable):
         """Labels of the methods."""
         return tuple(dict.fromkeys(row.method for row in self.rows))
 
-    def to_csv(self, path: str | os.PathLike[str] | None = None, *, force: bool = False) -> str:
-        """Comma-separated values with a line of names, all digits, and empty entries for NaN and None.
-
-        Parameters
-        ----------
-        path : path_like, optional
-            A file to write.
-        force : bool
-            Whether an existing file may be replaced.
-
-        Raises
-        ------
-        FormatError
-            If the file exists and `force` is False, or the file cannot be written.
-
-        Examples
-        --------
-        >>> WorkPrecisionTable((), (0.0, 1.0), 1, "numpy", "", 0.0, "", 0).to_csv()[:35]
-        'method,dt,tolerance,error,orbit_err'
-        """
-        return csv_file(WorkPrecisionRow._fields, self.rows, path, force=force)
-
     def plot(self, ax: Axes | None = None, *, against: str = "time", error: str = "trajectory") -> Axes:
         """Draw the errors over the cost, one curve for each method: `liehom.plotting.plot_work_precision`.
 
@@ -298,12 +273,11 @@ class WorkPrecisionTable(DisplayedTable):
         """
         return cast("Axes", provider("work precision")(self, ax, against=against, error=error))
 
-    def __repr__(self) -> str:
-        return str(self)
+    def _lines(self) -> list[Sequence[Any]]:
+        return [WorkPrecisionRow._fields, *self.rows]
 
     def _caption(self) -> str:
-        count = f", {self.trajectories} trajectories (root mean squares)" if self.trajectories != 1 else ""
-        return f"errors at t = {self.t_span[1]:.6g}, from t = {self.t_span[0]:.6g}{count}"
+        return f"errors at t = {self.t_span[1]:.6g}, from t = {self.t_span[0]:.6g}{self._ensemble()}"
 
     def _cells(self) -> list[list[str]]:
         head = ["method", "setting", "error", "orbit error", "calls", "steps", "CPU ms", "wall ms"]
@@ -329,14 +303,8 @@ def _cells_of(row: WorkPrecisionRow) -> list[str]:
     if row.failed:
         return [row.method, row.setting, "failed", "", "", "", "", ""]
     errors = ("" if math.isnan(x) else f"{x:.1e}" + "*" * (x < row.floor) for x in (row.error, row.orbit_error))
-    times = map(_milliseconds, (row.cpu_time, row.wall_time))
+    times = (f"{x:.0f}" if x >= 100 else f"{x:.3g}" for x in (1000 * row.cpu_time, 1000 * row.wall_time))
     return [row.method, row.setting, *errors, str(row.calls), str(row.steps), *times]
-
-
-def _milliseconds(seconds: float) -> str:
-    """Three significant digits, without an exponent."""
-    x = 1000 * seconds
-    return f"{x:.0f}" if x >= 100 else f"{x:.3g}"
 
 
 def sorted_rows(rows: Sequence[WorkPrecisionRow], methods: Sequence[str]) -> tuple[WorkPrecisionRow, ...]:
@@ -344,8 +312,6 @@ def sorted_rows(rows: Sequence[WorkPrecisionRow], methods: Sequence[str]) -> tup
     order = {label: k for k, label in enumerate(methods)}
     return tuple(sorted(rows, key=lambda row: (order[row.method], row.dt is None, -(row.dt or row.tolerance or 0.0))))
 
-
-# work_precision: errors and costs of several methods on one problem, for several step sizes or tolerances.
 
 Made = TypeVar("Made")
 ENOUGH = 1.0  # seconds of CPU time after which a call is not timed again
@@ -404,8 +370,6 @@ def work_precision(
 
     Raises
     ------
-    InputError, ShapeError
-        If an argument is not right: neither step sizes nor tolerances, two methods with the same label.
     ConvergenceError
         If the reference does not exist until the end.
     KeyboardInterrupt, LimitError
@@ -440,10 +404,9 @@ def work_precision(
     if isinstance(repeats, bool) or not isinstance(repeats, int | np.integer) or repeats < 1:
         raise InputError(f"repeats is {repeats!r}, expected an integer at least 1")
     positive("max_steps", max_steps)
-    chosen = compared_methods(
-        methods, field, span, start, exponential=exponential, clock=clock, engine=engine, max_steps=max_steps
-    )
-    runs = [(method, setting) for setting in settings for method in chosen if method.takes(setting)]
+    propagator = partial(Propagator, field, exponential=exponential, clock=clock, engine=engine)
+    chosen = compared_methods(methods, field, propagator, span, start, max_steps)
+    runs = [(x, setting) for setting in settings for x in chosen if setting.dt is None or not x.adaptive_only]
     if lazy := [method.label for method in chosen if not any(method is m for m, _ in runs)]:
         raise InputError(f"{', '.join(lazy)}: methods of scipy have no fixed step sizes, give tolerances too")
     exact = _exact(field, start, span, reference, orbit=not (field.time_dependent and clock == "nominal"))

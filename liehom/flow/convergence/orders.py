@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+from abc import ABC, abstractmethod
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
@@ -22,32 +23,41 @@ from liehom.flow.convergence.reference import Reference, orbit_distance
 from liehom.flow.engines.engine import Engine
 from liehom.flow.propagation.ensemble import EnsembleProblem, all_solved
 from liehom.flow.run.options import points_of, span_of
-from liehom.flow.run.solution import Solution
 from liehom.flow.steps.step import ExponentialLike, StepLike, as_step
-
-# Measured tables as comma-separated values: all digits, empty entries for what was not measured.
-
-
-def csv_file(
-    columns: Sequence[str],
-    rows: Iterable[Sequence[float | int | str | None]],
-    path: str | os.PathLike[str] | None = None,
-    *,
-    force: bool = False,
-) -> str:
-    """Comma-separated values with a line of names, also written to a path if it is given; NaN and None are empty."""
-    text = comma_separated([columns, *(["" if x is None or x != x else x for x in row] for row in rows)])
-    if path is None:
-        return text
-    check_target(path, force=force)
-    write_file(path, text.encode())
-    return text
-
-
-# ConvergenceTable: errors for several step sizes, and the slopes between those above round-off.
 
 MARGIN = 10.0  # smallest ratio of an error of the method to the accuracy of the reference and to round-off
 NAN = math.nan
+
+
+class MeasuredTable(DisplayedTable, ABC):
+    """Errors at the end of runs, in rows that are named tuples."""
+
+    __slots__ = ()
+
+    t_span: tuple[float, float]
+    trajectories: int
+
+    @abstractmethod
+    def _lines(self) -> list[Sequence[Any]]:
+        """The names of the columns, and the rows."""
+
+    def __repr__(self) -> str:
+        return str(self)
+
+    def to_csv(self, path: str | os.PathLike[str] | None = None, *, force: bool = False) -> str:
+        """Comma-separated values with a line of names, all digits, and empty entries for NaN and None.
+
+        They are also written to a path if one is given; `force` replaces an existing file.
+        """
+        text = comma_separated([["" if x is None or x != x else x for x in line] for line in self._lines()])
+        if path is not None:
+            check_target(path, force=force)
+            write_file(path, text.encode())
+        return text
+
+    def _ensemble(self) -> str:
+        """The end of a caption, for an ensemble."""
+        return f", {self.trajectories} trajectories (root mean squares)" if self.trajectories != 1 else ""
 
 
 class ConvergenceRow(NamedTuple):
@@ -63,7 +73,7 @@ class ConvergenceRow(NamedTuple):
 
 @final
 @dataclass(frozen=True, slots=True, repr=False)
-class ConvergenceTable(DisplayedTable):
+class ConvergenceTable(MeasuredTable):
     """Errors for several step sizes, and the slopes between them; the result of `observed_order`.
 
     Attributes
@@ -139,40 +149,14 @@ class ConvergenceTable(DisplayedTable):
         columns = (self.dts, self.orbit_errors, self.orbit_slopes, self.trajectory_errors, self.trajectory_slopes)
         return tuple(ConvergenceRow(*row) for row in zip(*columns, self.floors, strict=True))
 
-    def __repr__(self) -> str:
-        return str(self)
-
-    def to_csv(self, path: str | os.PathLike[str] | None = None, *, force: bool = False) -> str:
-        """Comma-separated values with a line of names, all digits, and empty entries for NaN.
-
-        Parameters
-        ----------
-        path : path_like, optional
-            A file to write.
-        force : bool
-            Whether an existing file may be replaced.
-
-        Raises
-        ------
-        FormatError
-            If the file exists and `force` is False, or the file cannot be written.
-
-        Examples
-        --------
-        >>> import liehom as lh
-        >>> field = lh.GeneratorField(lh.defining(lh.so(2)), ["1 + m0/2"])
-        >>> table = lh.convergence.observed_order(field, [1.0, 0.0], lh.Euler(), [0.1, 0.05])
-        >>> print(table.to_csv().splitlines()[0])
-        dt,orbit_error,orbit_slope,trajectory_error,trajectory_slope,floor
-        """
-        return csv_file(ConvergenceRow._fields, self.rows, path, force=force)
+    def _lines(self) -> list[Sequence[Any]]:
+        return [ConvergenceRow._fields, *self.rows]
 
     def _caption(self) -> str:
-        count = f", {self.trajectories} trajectories (root mean squares)" if self.trajectories != 1 else ""
         precision = "" if self.precision == "float64" else f", {self.precision}"
         return (
             f"{self.step} with {self.exponential}, clock {self.clock}, "
-            f"t = {self.t_span[0]:.6g} to {self.t_span[1]:.6g}{count}{precision}"
+            f"t = {self.t_span[0]:.6g} to {self.t_span[1]:.6g}{self._ensemble()}{precision}"
         )
 
     def _cells(self) -> list[list[str]]:
@@ -234,12 +218,6 @@ def errors_of(reference: Reference, points: Array, end: np.floating[Any], *, orb
     return (root_mean_square(orbit_distance(reference, points, end)[0]) if orbit else NAN), trajectory
 
 
-def end_points(run: Solution) -> Array:
-    """The last points (..., N) of a run; behind them rows of ensembles are filled up with NaN."""
-    last = np.isfinite(run.t).sum(axis=-1) - 1
-    return np.take_along_axis(run.y, last[..., None, None], axis=-1)[..., 0]
-
-
 def root_mean_square(distances: Array) -> float:
     """Root mean square of numbers, a float."""
     return float(np.sqrt(np.mean(distances**2)))
@@ -249,11 +227,6 @@ def floor_of(points: Array, dtype: np.dtype[Any], steps: npt.ArrayLike, accuracy
     """Ten times the accuracy of the reference, or ten times the rounding of all steps added up as a random walk."""
     unit = float(np.finfo(dtype).eps) * float(np.max(np.linalg.norm(points, axis=-1), initial=0.0))
     return MARGIN * max(accuracy, unit * math.sqrt(float(np.max(steps, initial=1))))
-
-
-# observed_order: the measured order of a method, on orbits and on trajectories.
-#     orbit error = min over s near T of |y - F_s(m_0)|,   trajectory error = |y - F_T(m_0)|,   y after steps of size h,
-# root mean squares over an ensemble; the order is the slope of log(error) over log(h).
 
 
 def observed_order(
@@ -296,8 +269,6 @@ def observed_order(
 
     Raises
     ------
-    InputError, ShapeError
-        If an argument is not right: fewer than two different step sizes, or a reference with another initial point.
     ConvergenceError
         If the run fails for every step size, or the solution does not exist until the end.
 
@@ -331,7 +302,7 @@ def observed_order(
         )
     accuracy = float(np.max(exact.accuracy(last)))
     orbit = not (field.time_dependent and clock == "nominal")
-    errors = [(NAN, NAN) if run.status == -1 else errors_of(exact, end_points(run), last, orbit=orbit) for run in runs]
+    errors = [(NAN, NAN) if run.status == -1 else errors_of(exact, run.y_end, last, orbit=orbit) for run in runs]
     report = runs[0].report
     return ConvergenceTable(
         step=repr(step),

@@ -8,7 +8,7 @@ from typing import Any, final
 import numpy as np
 import numpy.typing as npt
 
-from liehom.base.errors import ConvergenceError, InputError, ShapeError
+from liehom.base.errors import ConvergenceError, InputError, ShapeError, checked_integer
 from liehom.base.typing import Array, IntegerArray
 from liehom.flow.action.field import GeneratorField, check_point
 from liehom.flow.run.options import points_of
@@ -46,8 +46,6 @@ class Reference:
 
     Raises
     ------
-    ShapeError, InputError
-        If an initial point, the order or the tolerance is not right.
     SeriesError
         If psi cannot be expanded.
 
@@ -86,10 +84,9 @@ class Reference:
         start = points_of(y0)
         check_point(field.representation, start)
         order = ORDERS[start.dtype] if order is None else order
-        if isinstance(order, bool) or not isinstance(order, int | np.integer) or order < MIN_ORDER:
-            raise InputError(f"the order of a reference is an integer at least {MIN_ORDER}, got {order!r}")
         eps = np.finfo(start.dtype).eps
-        self.field, self.start, self.order = field, start, int(order)
+        self.field, self.start = field, start
+        self.order = checked_integer(order, "the order of a reference", MIN_ORDER)
         self.t0: np.floating[Any] = _number("t0", t0, start.dtype)
         self.tolerance: np.floating[Any] = eps if tolerance is None else _number("tolerance", tolerance, start.dtype)
         if not 0 < self.tolerance < 1:
@@ -103,9 +100,7 @@ class Reference:
 
     def derivative(self, t: npt.ArrayLike, k: int = 1) -> Array:
         """The k-th derivative with respect to time at t, of the shape of ``ref(t)``."""
-        if isinstance(k, bool) or not isinstance(k, int | np.integer) or k < 0:
-            raise InputError(f"the number of derivatives is an integer at least 0, got {k!r}")
-        return self._solution.evaluate(self._times(t), int(k))
+        return self._solution.evaluate(self._times(t), checked_integer(k, "the number of derivatives", 0))
 
     def accuracy(self, t: npt.ArrayLike) -> Array:
         """Largest distance from a second solution, of order n + 3 and with shorter pieces, until t, shape (...,).
@@ -285,9 +280,7 @@ TRUST_FRACTION = 0.5
 """Longest Newton step in units of |F'| / |F''|, a time in which the tangent turns or changes by its own length."""
 
 
-def orbit_distance(
-    reference: Reference, y: npt.ArrayLike, t: npt.ArrayLike, *, window: npt.ArrayLike | None = None
-) -> tuple[Array, Array]:
+def orbit_distance(reference: Reference, y: npt.ArrayLike, t: npt.ArrayLike) -> tuple[Array, Array]:
     """Distances of points from the orbits through the initial points of a reference, and the times of the minima.
 
     Parameters
@@ -296,9 +289,7 @@ def orbit_distance(
     y : array_like of shape (..., N)
         One point for each trajectory; more leading axes are more points.
     t : float or array of shape (...,)
-        The times near which the orbit is searched.
-    window : float or array, optional
-        The largest |s - t|; by default |t - t0|, t0 the initial time of the reference.
+        The times near which the orbit is searched, at |s - t| <= |t - t0|, t0 the initial time of the reference.
 
     Returns
     -------
@@ -307,8 +298,6 @@ def orbit_distance(
 
     Raises
     ------
-    ShapeError, InputError
-        If y or the window has a wrong shape or is not finite.
     ConvergenceError
         If the solution does not exist until t.
 
@@ -327,7 +316,8 @@ def orbit_distance(
     >>> round(float(distance), 14), round(float(s), 12)
     (0.25, 2.0)
     """
-    points, s, window = _arguments(reference, y, t, window)
+    points, s = _arguments(reference, y, t)
+    window = np.abs(s - reference.t0)
     low, high = s - window, s + window
     best = _distance(reference, points, s)
     eps = np.finfo(points.dtype).eps
@@ -344,10 +334,8 @@ def orbit_distance(
     return best, s
 
 
-def _arguments(
-    reference: Reference, y: npt.ArrayLike, t: npt.ArrayLike, window: npt.ArrayLike | None
-) -> tuple[Array, Array, Array]:
-    """Points, times and windows, checked and broadcast."""
+def _arguments(reference: Reference, y: npt.ArrayLike, t: npt.ArrayLike) -> tuple[Array, Array]:
+    """Points and times, checked and broadcast."""
     dtype, lead = reference.start.dtype, reference.start.shape[:-1]
     points = points_of(y).astype(dtype)
     if points.shape[-1:] != reference.start.shape[-1:]:
@@ -355,19 +343,15 @@ def _arguments(
     try:
         shape = np.broadcast_shapes(points.shape[:-1], np.shape(t), lead)
         times = np.broadcast_to(np.asarray(t).astype(dtype, casting="same_kind"), shape)
-        wide: Any = np.abs(times - reference.t0) if window is None else np.asarray(window)
-        wide = np.broadcast_to(wide.astype(dtype, casting="same_kind"), shape)
     except TypeError:
-        raise InputError(f"t or window is not a number: {t!r}, {window!r}") from None
+        raise InputError(f"t is not a number: {t!r}") from None
     except ValueError:
         raise ShapeError(
             f"points of shape {points.shape}, times of shape {np.shape(t)} and the ensemble {lead} do not fit together"
         ) from None
-    if not bool((wide >= 0).all()):
-        raise InputError(f"window is {window!r}, expected numbers at least 0")
     if not bool(np.isfinite(points).all()):
         raise InputError("a point is not finite: the distance from an orbit needs finite points")
-    return np.broadcast_to(points, (*shape, points.shape[-1])), times, wide
+    return np.broadcast_to(points, (*shape, points.shape[-1])), times
 
 
 def _distance(reference: Reference, y: Array, s: Array) -> Array:

@@ -16,8 +16,7 @@ from liehom.base.objects import refuse_masked
 from liehom.base.pytrees import Leaf, PerTrajectory, leaves, mapped, unwrapped
 from liehom.base.typing import Array, IntegerArray, Pytree, Values
 from liehom.flow.action.field import GeneratorField, check_point
-from liehom.flow.action.quadrics import tight_frame
-from liehom.flow.action.space import Action
+from liehom.flow.action.space import Action, tight_frame
 from liehom.flow.door import Representation
 from liehom.flow.engines.engine import Engine
 from liehom.flow.run.events import EventFunction

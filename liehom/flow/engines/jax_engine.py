@@ -16,7 +16,7 @@ from liehom.base.pytrees import Leaf, PerTrajectory, leaves, mapped, unwrapped
 from liehom.base.typing import Pytree
 from liehom.flow.action.field import GeneratorField
 from liehom.flow.action.fingerprint import Watch, parts_of
-from liehom.flow.action.quadrics import tight_frame
+from liehom.flow.action.space import tight_frame
 from liehom.flow.engines.engine import Problem, executed
 from liehom.flow.engines.jax_kernel import JaxKernel, enabled_x64
 from liehom.flow.engines.jax_loops import (

@@ -12,8 +12,7 @@ from liehom.base.errors import LiehomError, TraceError
 from liehom.base.pytrees import Leaf, PerTrajectory, leaves, mapped
 from liehom.base.typing import Array, IntegerArray, Pytree, Real, Values
 from liehom.flow.action.field import GeneratorField
-from liehom.flow.action.quadrics import tight_frame
-from liehom.flow.action.space import Action
+from liehom.flow.action.space import Action, tight_frame
 from liehom.flow.run.check import Seen, is_unbounded
 from liehom.flow.run.control import (
     ERROR_TERMS,

@@ -16,12 +16,10 @@ from liehom.flow.methods.midpoint import (
     VariationalMidpoint as VariationalMidpoint,
 )
 from liehom.flow.methods.named import step_named as step_named, step_names as step_names
-from liehom.flow.methods.rkmk import RKMK as RKMK, EmbeddedStep as EmbeddedStep
+from liehom.flow.methods.rkmk import RKMK as RKMK
 from liehom.flow.methods.runge_kutta import (
-    RootedTree as RootedTree,
     Tableau as Tableau,
     Violation as Violation,
-    rooted_trees as rooted_trees,
 )
 from liehom.flow.methods.stability import amplification as amplification, stability_limit as stability_limit
 from liehom.flow.methods.stiff import (
@@ -31,8 +29,6 @@ from liehom.flow.methods.stiff import (
 )
 from liehom.flow.methods.tableaux import (
     collocation as collocation,
-    gauss as gauss,
-    radau as radau,
     tableau as tableau,
     tableau_names as tableau_names,
 )

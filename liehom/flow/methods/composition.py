@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any, TypeAlias, final
 
@@ -13,7 +13,7 @@ from liehom.base.typing import Values
 from liehom.flow.action.components import Components, GeneratorLike
 from liehom.flow.action.space import Action
 from liehom.flow.methods.midpoint import require_exponential
-from liehom.flow.steps.step import Generator, LocalStep, Step
+from liehom.flow.steps.step import Derived, Generator, LocalStep, Step
 
 # Composition: a symmetric step composed with itself, so that it has any even order.
 #     S_(p+2)(h) = S_p(c h)^k S_p((1 - 2k c) h) S_p(c h)^k,    c = 1 / (2k - (2k)^(1/(p+1)))
@@ -25,7 +25,7 @@ REPETITIONS = {"yoshida": 1, "suzuki": 2}  # k of each scheme
 
 @final
 @dataclass(frozen=True)
-class Composition(Step):
+class Composition(Derived):
     """Substeps c_1 h, ..., c_k h of a symmetric step, of any even order; symplectic if the step is.
 
     Parameters
@@ -74,14 +74,7 @@ class Composition(Step):
         object.__setattr__(self, "sizes", sizes)
 
     symmetric = True
-
-    @property
-    def prepares_by_psi(self) -> bool:
-        return self.step.prepares_by_psi
-
-    @property
-    def trace_key(self) -> Hashable:
-        return self.step.trace_key
+    one_exponential = False
 
     def prepare(self, action: Action, psi: Generator, m: Values, t: Values) -> Composition:
         """The composition of the prepared step."""

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple, final
 
 import numpy as np
 
-from liehom.base.errors import InputError
+from liehom.base.errors import InputError, checked_integer
 from liehom.base.typing import Values
 from liehom.flow.action.exponential import TrueExponential
 from liehom.flow.action.space import Action
@@ -32,8 +32,6 @@ from liehom.flow.steps.step import (
     polynomial,
     step_variable,
 )
-
-# Steps of low order (Euler, backward Euler and Heun), and LieTaylor, of any order.
 
 
 @final
@@ -120,8 +118,7 @@ class LieTaylor(OneExponential):
     n: int
 
     def __post_init__(self) -> None:
-        if isinstance(self.n, bool) or not isinstance(self.n, int | np.integer) or self.n < 1:
-            raise InputError(f"the order of a Taylor step is an integer at least 1, got {self.n!r}")
+        checked_integer(self.n, "the order of a Taylor step")
 
     @property
     def order(self) -> int:
@@ -322,10 +319,7 @@ class CrouchGrossman3(ProductStep):
     """
 
     order = 3
-
-    @property
-    def scheme(self) -> Scheme:
-        return CROUCH_GROSSMAN_3
+    scheme = Scheme(((0, "3/4"), (0, "119/216; 0 17/108"), (0, "13/51; 0 -2/3; 0 0 24/17")))
 
 
 @final
@@ -348,14 +342,7 @@ class CommutatorFree4(ProductStep):
     """
 
     order = 4
-
-    @property
-    def scheme(self) -> Scheme:
-        return COMMUTATOR_FREE_4
-
-
-CROUCH_GROSSMAN_3 = Scheme(((0, "3/4"), (0, "119/216; 0 17/108"), (0, "13/51; 0 -2/3; 0 0 24/17")))
-COMMUTATOR_FREE_4 = Scheme(((0, "1/2"), (0, "0 1/2"), (1, "-1/2 0 1"), (0, "1/4 1/6 1/6 -1/12; -1/12 1/6 1/6 1/4")))
+    scheme = Scheme(((0, "1/2"), (0, "0 1/2"), (1, "-1/2 0 1"), (0, "1/4 1/6 1/6 -1/12; -1/12 1/6 1/6 1/4")))
 
 
 def check_exponential(action: Action, order: int) -> None:

@@ -126,8 +126,6 @@ class VariationalMidpoint(OneExponential):
 
     Raises
     ------
-    InputError
-        In a step, if the exponential is not the exponential map.
     ConvergenceError
         In a step, if the step size is too large: the equation is not solved, or |rho(x)| is above 4.
 
@@ -209,8 +207,6 @@ class SphericalMidpoint(Step):
 
     Raises
     ------
-    InputError
-        In a step, if the representation is not that of so(3)^n on R^(3n) by cross products.
     ConvergenceError
         In a step, if the iteration does not converge because the step size is too large.
 
@@ -312,8 +308,6 @@ class IsospectralMidpoint(Step):
 
     Raises
     ------
-    InputError
-        In a step, if the representation of the field is not the coadjoint one, or the group is not quadratic.
     ConvergenceError
         In a step, if the iteration does not converge because the step size is too large.
 
@@ -410,8 +404,6 @@ class MoserVeselov(Step):
 
     Raises
     ------
-    InputError
-        In a step, if psi is not that of such a body.
     ConvergenceError
         In a step, if the iteration does not converge because the step size is too large.
 

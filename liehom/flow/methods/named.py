@@ -9,10 +9,9 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from difflib import get_close_matches
+from functools import partial
 
-import numpy as np
-
-from liehom.base.errors import InputError, displayed
+from liehom.base.errors import InputError, checked_integer, displayed
 from liehom.flow.methods.composition import Composition, Splitting
 from liehom.flow.methods.low_order import BackwardEuler, CommutatorFree4, CrouchGrossman3, Euler, Heun, LieTaylor
 from liehom.flow.methods.midpoint import IsospectralMidpoint, MoserVeselov, SphericalMidpoint, VariationalMidpoint
@@ -24,15 +23,25 @@ from liehom.flow.steps.corrected import Corrected
 from liehom.flow.steps.step import Step
 
 DEFAULT_ORDER = 6
-_OWN = ("euler", "backward euler", "heun", "taylor", "lietaylor", "cg3", "cf4")
 _SERIES: dict[str, type[Taylor | LieTaylor]] = {"taylor": Taylor, "lietaylor": LieTaylor}
-_STIFF = ("radau3", "radau5", "radau9", "sdirk4", *ROSENBROCK, "exprb2", "exprb3", "exprb4")
 _SYMPLECTIC: dict[str, Callable[[], Step]] = {
     "spherical midpoint": SphericalMidpoint,
     "isospectral midpoint": IsospectralMidpoint,
     "variational midpoint": VariationalMidpoint,
     "moser-veselov": MoserVeselov,
     "splitting": Splitting,
+}
+_STEPS: dict[str, Callable[[], Step]] = {
+    "euler": Euler,
+    "backward euler": BackwardEuler,
+    "heun": Heun,
+    **{name: partial(step, DEFAULT_ORDER) for name, step in _SERIES.items()},
+    "cg3": CrouchGrossman3,
+    "cf4": CommutatorFree4,
+    **{name: partial(StiffRKMK, name) for name in ("radau3", "radau5", "radau9", "sdirk4")},
+    **{name: partial(Rosenbrock, name) for name in ROSENBROCK},
+    **{f"exprb{order}": partial(ExponentialRosenbrock, order) for order in (2, 3, 4)},
+    **_SYMPLECTIC,
 }
 _OF_ORDER = re.compile(r"(taylor|lietaylor)([0-9]{1,3})", re.ASCII)
 _ALIASES = {"impliciteuler": "backwardeuler", "expliciteuler": "euler", "forwardeuler": "euler"}
@@ -64,15 +73,15 @@ def step_named(base: str, order: int | None = None) -> Step:
         raise InputError(
             f"a base is a name such as 'euler' or 'rk4', got {displayed(base)}; known: {', '.join(step_names())}"
         )
-    if order is not None and (isinstance(order, bool) or not isinstance(order, int | np.integer) or order < 1):
-        raise InputError(f"the order is an integer at least 1, got {displayed(order)}")
+    if order is not None:
+        order = checked_integer(order, "the order")
     key = _key(base)
-    if key in _SERIES:
-        return _SERIES[key](DEFAULT_ORDER if order is None else int(order))
+    if key in _SERIES and order is not None:
+        return _SERIES[key](order)
     step = _plain(_ALIASES.get(key, key), base)
     if order is None or order <= step.order:
         return step
-    return Composition(step, int(order)) if key in map(_key, _SYMPLECTIC) else Corrected(step, int(order))
+    return Composition(step, order) if key in map(_key, _SYMPLECTIC) else Corrected(step, order)
 
 
 def step_names() -> tuple[str, ...]:
@@ -85,12 +94,7 @@ def step_names() -> tuple[str, ...]:
     >>> "rk4" in step_names()
     True
     """
-    return (
-        *_OWN,
-        *_STIFF,
-        *_SYMPLECTIC,
-        *(name for name in tableau_names() if _key(name) not in {*map(_key, _OWN), *_STIFF, *_ALIASES}),
-    )
+    return (*_STEPS, *(name for name in tableau_names() if _key(name) not in {*map(_key, _STEPS), *_ALIASES}))
 
 
 def _key(name: str) -> str:
@@ -99,22 +103,9 @@ def _key(name: str) -> str:
 
 def _plain(key: str, base: str) -> Step:
     """The uncorrected step of a name without spaces."""
-    own: dict[str, Callable[[], Step]] = {
-        "euler": Euler,
-        "backwardeuler": BackwardEuler,
-        "heun": Heun,
-        "cg3": CrouchGrossman3,
-        "cf4": CommutatorFree4,
-        **{_key(name): step for name, step in _SYMPLECTIC.items()},
-    }
+    own = {_key(name): step for name, step in _STEPS.items()}
     if key in own:
         return own[key]()
-    if key in ROSENBROCK:
-        return Rosenbrock(key)
-    if key.startswith("exprb") and key in _STIFF:
-        return ExponentialRosenbrock(int(key[5:]))
-    if key in _STIFF:
-        return StiffRKMK(key)
     if match := _OF_ORDER.fullmatch(key):
         return _SERIES[match[1]](int(match[2]))
     try:

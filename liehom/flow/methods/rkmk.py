@@ -25,7 +25,7 @@ from liehom.flow.methods.tableaux import tableau as tableau_of
 from liehom.flow.run.check import widest_gap
 from liehom.flow.series.arrays import is_exact, is_jax, zeros
 from liehom.flow.steps.implicit import SparseRow, combined, reach_of, solve_implicitly
-from liehom.flow.steps.step import Factors, Generator, LocalStep, OneExponential
+from liehom.flow.steps.step import Factors, Generator, LastSize, LocalStep, OneExponential
 
 
 class Coefficients(NamedTuple):
@@ -50,9 +50,6 @@ class RKMK(OneExponential):
 
     Raises
     ------
-    InputError
-        If no tableau has this name. In a step: if the order is above 2 and the inverse differential of the
-        exponential is not known, or the point is exact and the coefficients are floats.
     ConvergenceError
         In an implicit step, if the iteration does not converge because the step size is too large.
 
@@ -94,24 +91,11 @@ class RKMK(OneExponential):
 
     @property
     def terms(self) -> int:
-        """Number of terms of the series of dexp^-1 in use: the order minus 1, at least 1.
-
-        Examples
-        --------
-        >>> RKMK("heun").terms, RKMK("rk4").terms
-        (1, 3)
-        """
+        """Number of terms of the series of dexp^-1 in use: the order minus 1, at least 1."""
         return max(self.order - 1, 1)
 
     def coefficients(self, like: Values) -> Coefficients:
-        """The nonzero coefficients in the numbers of the array `like`.
-
-        Examples
-        --------
-        >>> import numpy as np
-        >>> RKMK("kutta3").coefficients(np.zeros(1)).a
-        ((), ((0, 0.5),), ((0, -1.0), (1, 2.0)))
-        """
+        """The nonzero coefficients in the numbers of the array `like`."""
         if is_exact(like):
             return self._exact(like)
         kind = "g" if like.dtype == np.longdouble and not is_jax(like) else "d"
@@ -155,24 +139,9 @@ class RKMK(OneExponential):
 
 @final
 class EmbeddedStep(LocalStep):
-    """A step of a pair of Runge-Kutta methods at one point, with an estimate of its error.
+    """A step of a pair of Runge-Kutta methods at one point, with an estimate of its error; `RKMK.at` returns it.
 
-    `RKMK.at` returns it. The stages for the last h are cached and shared by `factors` and `estimate`.
-
-    Attributes
-    ----------
-    estimate_order : int
-        The estimate is O(h^estimate_order): the lower of the orders of the pair, plus 1.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> import liehom as lh
-    >>> field = lh.GeneratorField(lh.defining(lh.so(2)), ["t"])
-    >>> psi = lh.steps.Generator(field, 1)
-    >>> local = RKMK("heun").at(lh.Action(field.representation), psi, np.array([1.0, 0.0]), np.array([0.0]))
-    >>> local.estimate(np.array([0.2])).round(12), local.estimate_order
-    (array([0.  , 0.02]), 2)
+    The stages for the last h are cached and shared by `factors` and `estimate`.
     """
 
     def __init__(self, stages: Stages) -> None:
@@ -204,42 +173,28 @@ class Stages:
         self._sequential = all(j <= i for i, row in enumerate(self.numbers.a) for j, _ in row)
         self._shape = (*np.shape(m)[:-1], action.dimension)
         self._start: Values | None = None
-        self._h: Values | None = None
-        self._copy: Values | None = None
-        self._known: list[Values] = []
-
-    @property
-    def known(self) -> Sequence[Values]:
-        """The stages that have been computed for the last h."""
-        return self._known
+        self._known: LastSize[list[Values]] = LastSize(lambda h: [])
 
     def combined(self, weights: SparseRow, h: Values) -> Values:
-        """sum_i weights[i] k_i."""
-        return combined(weights, self._through(h, weights[-1][0] + 1))
+        """sum_i weights[i] k_i, by the stages that are needed."""
+        return combined(weights, self.through(h, weights[-1][0] + 1))
 
-    def _through(self, h: Values, count: int) -> list[Values]:
+    def through(self, h: Values, count: int) -> Sequence[Values]:
         """The first `count` stages; later ones are computed only if the method is implicit in all of them."""
-        if not self._is_last(h):
-            self._h, self._copy, self._known = h, h.copy() if isinstance(h, np.ndarray) else None, []
-        if not self._sequential:
-            self._known = self._known or self._solved(h)
-        while len(self._known) < count:
-            self._known.append(self._next(h))
-        return self._known
+        known = self._known(h)
+        if not self._sequential and not known:
+            known += self._solved(h)
+        while len(known) < count:
+            known.append(self._next(known, h))
+        return known
 
-    def _is_last(self, h: Values) -> bool:
-        """Whether h is the last step size; arrays are compared by value, because their owner may have changed them."""
-        if isinstance(h, np.ndarray) and isinstance(self._copy, np.ndarray):
-            return h.dtype == self._copy.dtype and np.array_equal(h, self._copy)
-        return h is self._h and self._copy is None
-
-    def _next(self, h: Values) -> Values:
+    def _next(self, known: list[Values], h: Values) -> Values:
         """The stage after the known ones, by an equation for it alone if a_ii is not zero."""
-        i = len(self._known)
+        i = len(known)
         row = self.numbers.a[i]
         if not row or row[-1][0] < i:
-            return self._stage(i, combined(row, self._known), h)
-        before, (_, diagonal) = combined(row[:-1], self._known), row[-1]
+            return self._stage(i, combined(row, known), h)
+        before, (_, diagonal) = combined(row[:-1], known), row[-1]
 
         def stage(k: Values) -> Values:
             return self._stage(i, k * diagonal if before is None else before + k * diagonal, h)

@@ -7,10 +7,10 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cache, cached_property
+from functools import cache, cached_property, partial
 from itertools import islice, zip_longest
 from math import prod
-from typing import Any, TypeAlias, TypeVar, final
+from typing import Any, final
 
 import numpy as np
 import numpy.typing as npt
@@ -18,7 +18,7 @@ import numpy.typing as npt
 from liehom.base.errors import FieldError, InputError, ShapeError
 from liehom.base.objects import Displayed
 from liehom.base.typing import ScalarLike, VectorLike
-from liehom.flow.door import RR, AlgebraicNumber, Field, NumberField, Scalar, common_field
+from liehom.flow.door import RR, AlgebraicNumber, Field, Scalar, common_field
 
 # Rooted trees and the order conditions of Runge-Kutta methods. A method (a, b) has order p if and only if, for every
 # rooted tree t with at most p vertices (J. C. Butcher, Numerical Methods for Ordinary Differential Equations, section
@@ -29,9 +29,6 @@ from liehom.flow.door import RR, AlgebraicNumber, Field, NumberField, Scalar, co
 # with v) = s(u) * (a s(v)). This is one product of whole arrays per number of vertices, over exact scalars as over
 # floats.
 
-MethodArray: TypeAlias = npt.ArrayLike | Sequence[Any]
-"""Coefficients of a method: floats or exact scalars, in lists or arrays."""
-
 MAX_ORDER = 14
 """The largest number of vertices of a tree: there are 32973 trees with 14 vertices, 53272 with at most 14."""
 
@@ -41,18 +38,7 @@ MAX_ORDER = 14
 class RootedTree:
     """A rooted tree, written as the bracket of the subtrees at its root; the single vertex is ``RootedTree()``.
 
-    Parameters
-    ----------
-    children : tuple of RootedTree
-        The subtrees at the root. Their order does not matter for the tree, but it does for ``==``; `rooted_trees`
-        returns each tree in one order only.
-
-    Examples
-    --------
-    >>> vertex = RootedTree()
-    >>> cherry = RootedTree((vertex, vertex))
-    >>> print(RootedTree((cherry,)), RootedTree((cherry,)).order, RootedTree((cherry,)).density)
-    [[τ, τ]] 4 12
+    The order of the subtrees matters for ``==`` only; `rooted_trees` returns each tree in one order.
     """
 
     children: tuple[RootedTree, ...] = ()
@@ -126,15 +112,7 @@ def checked_order(order: object, what: str = "order") -> int:
 
 
 def rooted_trees(order: int) -> tuple[RootedTree, ...]:
-    """All rooted trees with `order` vertices, each once, in the order in which violations are looked for.
-
-    Examples
-    --------
-    >>> [str(tree) for tree in rooted_trees(4)]
-    ['[τ, τ, τ]', '[[τ], τ]', '[[τ, τ]]', '[[[τ]]]']
-    >>> [len(rooted_trees(n)) for n in range(1, 9)]
-    [1, 1, 2, 4, 9, 20, 48, 115]
-    """
+    """All rooted trees with `order` vertices, each once, in the order in which violations are looked for."""
     level = _level(checked_order(order))
     return tuple(_tree(level.start + i) for i in range(level.count))
 
@@ -144,26 +122,9 @@ def densities(order: int) -> npt.NDArray[np.int64]:
     return _level(checked_order(order)).density
 
 
-def _arrays(a: MethodArray, b: MethodArray) -> tuple[npt.NDArray[Any], npt.NDArray[Any], npt.NDArray[Any]]:
-    """(a, b, ones) as numpy arrays that can be multiplied; exact scalars stay objects."""
-    matrix, weights = np.asarray(a), np.asarray(b)
-    stages = weights.shape[0] if weights.ndim == 1 else 0
-    if not stages or matrix.shape != (stages, stages):
-        raise ShapeError(f"a method has a of shape (s, s) and b of shape (s,), got {matrix.shape} and {weights.shape}")
-    exact = object in (matrix.dtype, weights.dtype)
-    return matrix, weights, np.ones(stages, dtype=object if exact else np.result_type(matrix, weights))
-
-
-def elementary_weights(a: MethodArray, b: MethodArray) -> Iterator[npt.NDArray[Any]]:
+def elementary_weights(matrix: npt.NDArray[Any], weights: npt.NDArray[Any]) -> Iterator[npt.NDArray[Any]]:
     """Iterator over the arrays of Phi(t) for the trees of order 1, of order 2, and so on through `MAX_ORDER`."""
-    matrix, weights, ones = _arrays(a, b)
-    return _weights_by_order(matrix, weights, ones)
-
-
-def _weights_by_order(
-    matrix: npt.NDArray[Any], weights: npt.NDArray[Any], ones: npt.NDArray[Any]
-) -> Iterator[npt.NDArray[Any]]:
-    stages = ones[None, :]  # s(t), one row per tree
+    stages = np.ones((1, len(weights)), dtype=weights.dtype)  # s(t), one row per tree
     grafts = stages[:0]  # a s(t), likewise
     fresh = stages
     yield fresh @ weights
@@ -173,10 +134,6 @@ def _weights_by_order(
         fresh = stages[level.left] * grafts[level.right]
         stages = np.concatenate([stages, fresh])
         yield fresh @ weights
-
-
-# Order conditions of a Runge-Kutta method, checked order by order, exactly or with a stated tolerance. The condition of
-# a rooted tree t is Phi(t) = 1/gamma(t), see `rooted_trees`.
 
 
 @final
@@ -244,7 +201,6 @@ def _array(values: Sequence[Scalar], field: Field) -> npt.NDArray[Any]:
 # the order conditions of all rooted trees up to the claimed order (`rooted_trees`). Over QQ and real number fields this
 # is exact and proves the order; in float64, `residual` is the largest violation.
 
-Value = TypeVar("Value")
 Row = tuple[Scalar, ...]
 
 TOLERANCE = 1e-13  # default for the largest defect of a condition in float64 that does not count as a violation
@@ -262,7 +218,7 @@ class Tableau(Displayed):
         may give row i by its i entries below the diagonal.
     b : array-like (s,)
     order : int, optional
-        The claimed order, from 1 to `rooted_trees.MAX_ORDER`: every condition up to it must hold. By default the
+        The claimed order, from 1 to 14: every condition up to it must hold. By default the
         highest order that holds.
     name : str, optional
         What errors and plots call the method.
@@ -285,12 +241,8 @@ class Tableau(Displayed):
 
     Raises
     ------
-    ShapeError
-        If the numbers of entries do not fit together.
     FieldError, ParseError
         If an entry is not a number, or not in the field.
-    InputError
-        If c is not the row sums, or an order condition fails: the message names the tree and the defect.
 
     Examples
     --------
@@ -390,13 +342,7 @@ tree [τ] of order 2: weight 1/3, expected 1/2, defect -1/6; claim order 1, whic
         return next((violation for violation, _ in checks if violation is not None), None)
 
     def actual_order(self, *, embedded: bool = False) -> int:
-        """The highest order (at most `rooted_trees.MAX_ORDER`) whose conditions all hold; 0 if sum b is not 1.
-
-        Examples
-        --------
-        >>> Tableau([[], [1]], ["1/2", "1/2"], order=1).actual_order()
-        2
-        """
+        """The highest order (at most 14) whose conditions all hold; 0 if sum b is not 1."""
         violation = self.first_violation(embedded=embedded)
         return MAX_ORDER if violation is None else violation.order - 1
 
@@ -425,20 +371,6 @@ tree [τ] of order 2: weight 1/3, expected 1/2, defect -1/6; claim order 1, whic
         a = np.stack([array(row) for row in self.a])
         return a, array(self.b), array(self.c), None if self.embedded_b is None else array(self.embedded_b)
 
-    def to_strings(self) -> dict[str, Any]:
-        """The coefficients as strings in the grammar of values: a, b, c and, if it exists, embedded_b.
-
-        Examples
-        --------
-        >>> from liehom.flow.methods import tableau
-        >>> tableau("gauss2").to_strings()["c"]
-        ['1/2 - 1/6*sqrt(3)', '1/2 + 1/6*sqrt(3)']
-        """
-        shown = self.field.format
-        rows = {"b": self.b, "c": self.c} | ({} if self.embedded_b is None else {"embedded_b": self.embedded_b})
-        a = [[shown(x) for x in row] for row in self.a]
-        return {"a": a} | {key: [shown(x) for x in row] for key, row in rows.items()}
-
     def __repr__(self) -> str:
         stages = f"{self.stages} stage{'s' if self.stages > 1 else ''}"
         embedded = "" if self.embedded_order is None else f", embedded order {self.embedded_order}"
@@ -465,12 +397,8 @@ tree [τ] of order 2: weight 1/3, expected 1/2, defect -1/6; claim order 1, whic
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickles contain the coefficients; the order is proved again when they are read."""
-        of_field: Any = self.field
-        convert = of_field.format if isinstance(of_field, NumberField) else _same
-        if isinstance(of_field, NumberField):
-            of_field = (of_field.symbol, of_field.minpoly, of_field.interval)
-        rows = [[convert(x) for x in row] for row in (*self.a, self.b, self.c, self.embedded_b or ())]
-        return _restored, (self.name, rows, self.order, self.embedded_order, of_field, self.tolerance)
+        names = ("name", "c", "embedded_b", "embedded_order", "field", "tolerance")
+        return partial(Tableau, self.a, self.b, self.order, **{name: getattr(self, name) for name in names}), ()
 
     def _row_sums(self) -> Row:
         return tuple(sum(row, self.field.zero) for row in self.a)
@@ -513,33 +441,6 @@ tree [τ] of order 2: weight 1/3, expected 1/2, defect -1/6; claim order 1, whic
                 )
             sizes.append(size)
         return sizes
-
-
-def _restored(
-    name: str,
-    rows: list[list[Any]],
-    order: int,
-    embedded_order: int | None,
-    field: Field | tuple[Any, ...],
-    tolerance: float,
-) -> Tableau:
-    """The tableau that `Tableau.__reduce__` describes."""
-    *a, b, c, embedded = rows
-    return Tableau(
-        a,
-        b,
-        order,
-        c=c,
-        embedded_b=embedded or None,
-        embedded_order=embedded_order,
-        field=NumberField(*field) if isinstance(field, tuple) else field,
-        tolerance=tolerance,
-        name=name,
-    )
-
-
-def _same(value: Value) -> Value:
-    return value
 
 
 def _list(values: object, what: str) -> list[Any]:

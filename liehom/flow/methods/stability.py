@@ -87,7 +87,7 @@ def _sizes(local: LocalStep, count: int) -> Array:
 
 
 @lru_cache(maxsize=64)
-def stability_limit(step: Step, *, clock: str = "corrected") -> float:
+def stability_limit(step: Step) -> float:
     """The largest K dt up to which a step damps m' = -K y near an equilibrium, a float; inf if it is above 100.
 
     Examples
@@ -99,13 +99,13 @@ def stability_limit(step: Step, *, clock: str = "corrected") -> float:
     inf
     """
     grid = np.concatenate([np.linspace(0.02, 20, 1000), np.linspace(20.1, MAX_SIZE, 800)])
-    unstable = np.flatnonzero(~(amplification(step, -grid, clock=clock) <= 1))
+    unstable = np.flatnonzero(~(amplification(step, -grid) <= 1))
     if not unstable.size:
         return float("inf")
     if not unstable[0]:
         return 0.0
     fine = np.linspace(grid[unstable[0] - 1], grid[unstable[0]], 200)
-    ends = np.flatnonzero(~(amplification(step, -fine, clock=clock) <= 1))
+    ends = np.flatnonzero(~(amplification(step, -fine) <= 1))
     return float(fine[ends[0] - 1] if ends.size and ends[0] else fine[-1])
 
 

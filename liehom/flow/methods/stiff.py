@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable
 from dataclasses import dataclass
 from math import factorial, sqrt
-from typing import Any, Generic, NamedTuple, TypeVar, final
+from typing import Any, NamedTuple, final
 
 import numpy as np
 
 from liehom.base.errors import InputError, TraceError, displayed
 from liehom.base.typing import Real, Values
-from liehom.flow.action.maps import solve
+from liehom.flow.action.maps import applied, solve
 from liehom.flow.action.space import Action
 from liehom.flow.methods.rkmk import RKMK, Stages, sparse_row
 from liehom.flow.methods.runge_kutta import Tableau
@@ -21,30 +20,9 @@ from liehom.flow.run.check import widest_gap
 from liehom.flow.series.arrays import is_lazy, zeros
 from liehom.flow.series.jet import Jet
 from liehom.flow.steps.implicit import DIFFERENCE, NOT_ON_JETS, Equation, SparseRow, Stage, combined
-from liehom.flow.steps.step import Factors, Generator, LocalStep, OneExponential
+from liehom.flow.steps.step import Factors, Generator, LastSize, LocalStep, OneExponential
 
 # Linearization: u' = f(u, s) in the algebra at a point, with f(u, s) = dexp^-1_u psi(Exp(u) m, t + s).
-
-Result = TypeVar("Result")
-
-
-@final
-class LastSize(Generic[Result]):
-    """A function of the step size that keeps its last result."""
-
-    def __init__(self, compute: Callable[[Values], Result]) -> None:
-        self._compute = compute
-        self._h: Any = None
-        self._last: list[Result] = []
-
-    def __call__(self, h: Values) -> Result:
-        """The result for the size h; arrays are compared by value, because their owner may have changed them."""
-        arrays = isinstance(h, np.ndarray) and isinstance(self._h, np.ndarray)
-        same = h is self._h if not arrays else h.dtype == self._h.dtype and np.array_equal(h, self._h)
-        if not (same and self._last):
-            self._last = [self._compute(h)]
-            self._h = h.copy() if isinstance(h, np.ndarray) else h
-        return self._last[0]
 
 
 @final
@@ -165,8 +143,8 @@ class StiffStep(LocalStep):
         stages = self._stages
         if self._linear is None:
             self._linear = Linearization(stages.action, stages.psi, stages.m, stages.t, min(stages.method.terms, 2))
-        stages.combined(stages.numbers.b, h)
-        difference: Any = combined(self._weights, stages.known)
+        known = stages.through(h, max(i for i, _ in (*stages.numbers.b, *self._weights)) + 1)
+        difference: Any = combined(self._weights, known)
         if self._at_start:
             difference = difference + self._gamma * h * self._linear.start
         return stages.action.infinitesimal(self._linear.solve(self._gamma * h, difference), stages.m)
@@ -297,39 +275,30 @@ class RosenbrockStep(LocalStep):
         self._stages = LastSize(self._computed)
 
     def factors(self, h: Values) -> Factors:
-        return (_weighted(self._method.m, self._stages(h)),)
+        return (combined(sparse_row(self._method.m), self._stages(h)),)
 
     def estimate(self, h: Values) -> Values:
         """rho(x) m with x the difference of the embedded methods, for h (..., 1); shape (..., N)."""
-        return self.action.infinitesimal(_weighted(self._method.e, self._stages(h)), self.m)
+        return self.action.infinitesimal(combined(sparse_row(self._method.e), self._stages(h)), self.m)
 
     def _computed(self, h: Values) -> list[Any]:
         """U_1, ..., U_s."""
         method, linear = self._method, self._linear
         stages: list[Any] = []
         for i, gamma_i in enumerate(method.gammas):
-            u = _weighted(method.a[i], stages)
+            u = combined(sparse_row(method.a[i]), stages)
             if u is None:
                 right = h * (
                     linear.start if method.alpha[i] == 0 else linear.psi(self.m, linear.t + method.alpha[i] * h)
                 )
             else:
                 right = h * linear.value(u, method.alpha[i] * h)
-            before = _weighted(method.c[i], stages)
+            before = combined(sparse_row(method.c[i]), stages)
             right = right if before is None else right + before
             if gamma_i and linear.rate is not None:
                 right = right + gamma_i * h * h * linear.rate
             stages.append(linear.solve(method.gamma * h, method.gamma * right))
         return stages
-
-
-def _weighted(weights: tuple[float, ...], terms: list[Any]) -> Stage:
-    """sum_j weights[j] terms[j]; None if there is nothing to add."""
-    total = None
-    for weight, term in zip(weights, terms, strict=False):
-        if weight:
-            total = weight * term if total is None else total + weight * term
-    return total
 
 
 # ExponentialRosenbrock: steps that integrate the linearization of the field exactly. For u' = f(u), u(0) = 0 in the
@@ -401,35 +370,31 @@ class _ExponentialStep(LocalStep):
         at, rate = self._linear, self._linear.rate
         jacobian: Any = at.jacobian
         phi = _phis(h, jacobian)
-        v = h * _times(phi[0], at.start)
+        v = h * applied(phi[0], at.start)
         if rate is not None:
-            v = v + h * h * _times(phi[1], rate)
+            v = v + h * h * applied(phi[1], rate)
         if self.order == 2:
             return v, None
 
         def rest(u: Values, s: Values) -> Stage:
-            difference = at.value(u, s) - at.start - _times(jacobian, u)
+            difference = at.value(u, s) - at.start - applied(jacobian, u)
             return difference if rate is None else difference - s * rate
 
         if self.order == 3:
-            extra = 2 * h * _times(phi[2], rest(v, h))
+            extra = 2 * h * applied(phi[2], rest(v, h))
             return v + extra, extra
         half = _phis(h / 2, jacobian)
-        p = h / 2 * _times(half[0], at.start)
+        p = h / 2 * applied(half[0], at.start)
         if rate is not None:
-            p = p + h * h / 4 * _times(half[1], rate)
+            p = p + h * h / 4 * applied(half[1], rate)
         d = rest(p, h / 2)
-        e = rest(v + h * _times(phi[0], d), h)
-        extra = h * _times(phi[3], 12 * e - 48 * d)
-        return v + h * _times(phi[2], 16 * d - 2 * e) + extra, extra
+        e = rest(v + h * applied(phi[0], d), h)
+        extra = h * applied(phi[3], 12 * e - 48 * d)
+        return v + h * applied(phi[2], 16 * d - 2 * e) + extra, extra
 
     def estimate(self, h: Values) -> Values:
         """rho(x) m with x the difference of the methods of two orders, for h (..., 1); shape (..., N)."""
         return self.action.infinitesimal(self._solved(h)[1], self.m)
-
-
-def _times(matrix: Stage, v: Stage) -> Stage:
-    return (matrix @ v[..., None])[..., 0]
 
 
 def _phis(h: Values, jacobian: Values) -> list[Any]:

@@ -122,7 +122,7 @@ GAUSS_DIGITS = 60
 """Correct decimal digits of the nodes of Gauss methods with 4 and more stages, before they are rounded to float64."""
 
 
-def collocation(name: str, nodes: Sequence[ScalarLike], order: int, *, field: Field | None = None) -> Tableau:
+def collocation(name: str, nodes: Sequence[ScalarLike], order: int) -> Tableau:
     """The `Tableau` of the collocation method with given nodes.
 
     Parameters
@@ -132,13 +132,9 @@ def collocation(name: str, nodes: Sequence[ScalarLike], order: int, *, field: Fi
         Different numbers: strings, integers, fractions.
     order : int
         The claimed order: s, or more if the nodes are those of a quadrature formula of higher order.
-    field : Field, optional
-        An exact field that contains the nodes (default: the smallest such field).
 
     Raises
     ------
-    InputError
-        If nodes coincide, or the order is not reached.
     FieldError, ParseError
         If a node is not in an exact field.
 
@@ -147,11 +143,9 @@ def collocation(name: str, nodes: Sequence[ScalarLike], order: int, *, field: Fi
     >>> collocation("equal steps", [0, "1/2", 1], order=4)
     <tableau 'equal steps' of order 4, 3 stages, over QQ>
     """
-    texts = [x if isinstance(x, str) else str(x) for x in nodes]
-    numbers = common_field(texts) if field is None else field
-    if not numbers.exact:
-        raise InputError("collocation solves for its coefficients exactly; give nodes in an exact field")
-    c = [numbers.convert(x) for x in (texts if field is None else nodes)]
+    texts = [str(x) for x in nodes]
+    numbers = common_field(texts)
+    c: list[Scalar] = [numbers.convert(x) for x in texts]
     if len(set(c)) != len(c):
         raise InputError(f"the nodes of a collocation method are different numbers, got {', '.join(texts)}")
     *a, b = _coefficients(c, numbers)
@@ -168,20 +162,8 @@ def _coefficients(c: list[Scalar], field: Field) -> list[list[Scalar]]:
 def gauss(stages: int) -> Tableau:
     """The Gauss method with s stages, of order 2 s: collocation at the zeros of the Legendre polynomial.
 
-    Up to 3 stages it is exact, over QQ, QQ(sqrt(3)) and QQ(sqrt(15)). For 4 and more stages, the nodes are computed
-    with 60 digits, and the coefficients are rounded to float64.
-
-    Parameters
-    ----------
-    stages : int
-        From 1 to 7.
-
-    Examples
-    --------
-    >>> gauss(2)
-    <tableau 'gauss2' of order 4, 2 stages, over QQ(sqrt(3))>
-    >>> gauss(4).order, gauss(4).residual < 1e-15
-    (8, True)
+    Up to 3 stages it is exact, over QQ, QQ(sqrt(3)) and QQ(sqrt(15)). For 4 to 7 stages, the nodes are computed with 60
+    digits, and the coefficients are rounded to float64.
     """
     if isinstance(stages, bool) or not isinstance(stages, int) or not 1 <= stages <= MAX_ORDER // 2:
         raise InputError(f"a Gauss method has 1 to {MAX_ORDER // 2} stages here, got {stages!r}")
@@ -199,18 +181,7 @@ def gauss(stages: int) -> Tableau:
 
 
 def radau(stages: int) -> Tableau:
-    """The Radau IIA method with s stages, of order 2 s - 1, in float64; it is L-stable.
-
-    Parameters
-    ----------
-    stages : int
-        From 2 to 7.
-
-    Examples
-    --------
-    >>> radau(5).order, radau(5).residual < 1e-13, radau(5).c[-1]
-    (9, True, 1.0)
-    """
+    """The Radau IIA method with s stages, from 2 to 7, of order 2 s - 1, in float64; it is L-stable."""
     if isinstance(stages, bool) or not isinstance(stages, int) or not 2 <= stages <= MAX_ORDER // 2:
         raise InputError(f"a Radau IIA method has 2 to {MAX_ORDER // 2} stages here, got {stages!r}")
     # the nodes are 1 and the zeros of P_s - P_(s-1), divided by x - 1
@@ -243,11 +214,6 @@ def _refined(ascending: list[int], starts: npt.NDArray[np.float64]) -> list[Scal
         zeros.append(QQ.convert(x))
     return zeros
 
-
-# Classical Runge-Kutta methods by name; each proves its order at the first request.
-#
-# The coefficients are in `EXPLICIT` and `IMPLICIT`. Those of collocation methods are computed from their nodes
-# (`collocation`), and dop853 is read from ``scipy.integrate.DOP853``.
 
 _ALIASES = {
     "explicit euler": "euler",

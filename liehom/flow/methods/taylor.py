@@ -16,13 +16,12 @@ from typing import Any, ClassVar, NamedTuple, final
 
 import numpy as np
 
-from liehom.base.errors import InputError
+from liehom.base.errors import InputError, checked_integer
 from liehom.base.typing import Array, BooleanArray, IntegerArray, Values
 from liehom.flow.action.exponential import TrueExponential
 from liehom.flow.action.field import GeneratorField
-from liehom.flow.action.invariants import InvariantLanding, invariant_landing
-from liehom.flow.action.quadrics import Quadrics, TightInverse, quadric_orbits, tight_inverse
-from liehom.flow.action.space import Action
+from liehom.flow.action.invariants import InvariantLanding, Quadrics, invariant_landing, quadric_orbits
+from liehom.flow.action.space import Action, TightInverse, tight_inverse
 from liehom.flow.series.arrays import coarse, is_traced, namespace
 from liehom.flow.series.jet import Jet
 from liehom.flow.series.quadratic import AffineFlow, affine_flow
@@ -31,6 +30,7 @@ from liehom.flow.steps.expansion import Flow, flow_series
 from liehom.flow.steps.step import (
     SERIES_FRACTION,
     Generator,
+    LastSize,
     LocalStep,
     Step,
     StepLimits,
@@ -98,8 +98,7 @@ class Taylor(Step):
     _landing: ClassVar[Landing | None] = None  # of `prepare`
 
     def __post_init__(self) -> None:
-        if isinstance(self.n, bool) or not isinstance(self.n, int | np.integer) or self.n < 1:
-            raise InputError(f"the order of a Taylor step is an integer at least 1, got {self.n!r}")
+        checked_integer(self.n, "the order of a Taylor step")
 
     @classmethod
     def for_tolerance(cls, tolerance: float) -> Taylor:
@@ -288,7 +287,7 @@ class InvariantSeries(TaylorSeries):
     def __init__(self, far: LandedSeries, landing: InvariantLanding, start: Values | None) -> None:
         super().__init__(far.action, far.m, far.trajectory)
         self._far, self._landing = far, landing
-        self._latest: tuple[Values, Values, Values | BooleanArray] | None = None
+        self._landed = LastSize(self._at)
         if isinstance(self.m, Traced):
             tape = self.m.tape
             self._numbers: Sequence[Values] = [Traced(tape, tape.trajectory_constant(f)) for f in landing.functions()]
@@ -307,11 +306,9 @@ class InvariantSeries(TaylorSeries):
         near = self._landed(h)[1]
         return True if isinstance(near, np.ndarray | np.bool_) else near
 
-    def _landed(self, h: Values) -> tuple[Values, Values | BooleanArray]:
-        if self._latest is None or self._latest[0] is not h:
-            steps = 1 if len(self.trajectory) >= SHARP_ORDER else 2
-            self._latest = h, *self._landing.landed(self.series(h), self._numbers, steps)
-        return self._latest[1:]
+    def _at(self, h: Values) -> tuple[Values, Values | BooleanArray]:
+        """The point after a step of size h, and whether it is that of the orbit."""
+        return self._landing.landed(self.series(h), self._numbers, 1 if len(self.trajectory) >= SHARP_ORDER else 2)
 
 
 def _flow(field: GeneratorField, m: Values, order: int, t: Values) -> Flow | AffineFlow:

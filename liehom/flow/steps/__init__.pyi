@@ -1,13 +1,10 @@
 from liehom.flow.steps.conserving import (
-    Conserved as Conserved,
     ConservedOrder as ConservedOrder,
     Conserving as Conserving,
-    ConservingStep as ConservingStep,
     conserved_order as conserved_order,
 )
 from liehom.flow.steps.corrected import (
     Corrected as Corrected,
-    CorrectedStep as CorrectedStep,
     Correction as Correction,
     correction as correction,
 )
@@ -18,10 +15,8 @@ from liehom.flow.steps.curvature import (
     moving_frame_field as moving_frame_field,
 )
 from liehom.flow.steps.expansion import (
-    Clock as Clock,
     Flow as Flow,
     flow_series as flow_series,
-    leading_order as leading_order,
     step_series as step_series,
 )
 from liehom.flow.steps.first_integral import (
@@ -45,5 +40,4 @@ from liehom.flow.steps.step import (
     OneExponential as OneExponential,
     Step as Step,
     apply_factors as apply_factors,
-    step_variable as step_variable,
 )

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple, final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from liehom.base.errors import InputError, TraceError
+from liehom.base.errors import InputError, TraceError, checked_integer
 from liehom.base.typing import Array, BooleanArray, IntegerArray, Real, Values
 from liehom.flow.action.field import GeneratorField
 from liehom.flow.action.space import Action
@@ -26,10 +26,12 @@ from liehom.flow.steps.first_integral import (
     conditioning,
 )
 from liehom.flow.steps.step import (
+    Derived,
     Diagnostics,
     ExponentialLike,
     Factors,
     Generator,
+    LastSize,
     LocalStep,
     Step,
     StepLike,
@@ -171,9 +173,6 @@ def _square(x: Array) -> Array:
     return (x * x).sum(axis=-1)
 
 
-# ConservingStep: a conserving step at one point, as a function of the step size. For each h the isotropy t^(n-1) sigma
-# is found by Newton's method (`level_newton`), or by one linear solve.
-
 CONSERVED_ROUNDOFFS = 32.0  # F counts as conserved up to this many units of its round-off
 TOLERATED_UNITS = 0.5  # residuals of F within this many units of round-off, eps times `Conservation.scale`, count as 0
 
@@ -181,34 +180,19 @@ TOLERATED_UNITS = 0.5  # residuals of F within this many units of round-off, eps
 @final
 @dataclass(frozen=True, slots=True)
 class Conserved:
-    """Report of a conserving step of one size; all arrays have shape (...,).
+    """Report of a conserving step of one size; all arrays have shape (...,)."""
 
-    Attributes
-    ----------
-    iterations : array of int
-        Number of iterations of Newton's method.
-    defect : array
-        The largest |F_i(step) - target_i|.
-    units : array
-        The largest |F_i(step) - target_i| in units of the round-off of F_i.
-    rank, wanted : array of int
-        The rank of chi_m, and the number of integrals that are independent on the orbit at m.
-    left : array of bool
-        Whether isotropy was not used because F does not resolve its effect: at or near an equilibrium, or for h = 0.
-    """
-
-    iterations: Values
-    defect: Values
-    units: Values
-    rank: Values
-    wanted: Values
-    left: Values
+    iterations: Values  # of Newton's method
+    defect: Values  # the largest |F_i(step) - target_i|
+    units: Values  # the same in units of the round-off of F_i
+    rank: Values  # of chi_m
+    wanted: Values  # number of integrals that are independent on the orbit at m
+    left: Values  # whether F does not resolve the effect of isotropy: at or near an equilibrium, or for h = 0
 
 
 class _Made(NamedTuple):
-    """The step of size h: its isotropy, its point and the report."""
+    """The step of one size: its isotropy, its point and the report."""
 
-    h: Values
     zeta: Values | None
     point: Values
     record: Conserved
@@ -218,30 +202,8 @@ class _Made(NamedTuple):
 class ConservingStep(LocalStep):
     """A conserving step at one point, as a function of h, for each of which the correction is computed.
 
-    `Conserving.at` returns it.
-
-    Parameters
-    ----------
-    base : LocalStep
-    found : Conservation
-        chi_m.
-    target : array of shape (..., k), or None
-        Target value of F; None for F(m).
-    n : int or None
-        Index of the first coefficient E_n that does not vanish everywhere.
-    one_exponential, linear : bool
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> import liehom as lh
-    >>> field = lh.GeneratorField(lh.adjoint(lh.so(3)), ["-m0", "-m1/2", "-m2/4"])
-    >>> action, psi = lh.Action(field.representation), lh.steps.Generator(field, 2)
-    >>> step = lh.steps.Conserving(lh.Euler(), "m0**2 + m1**2/2 + m2**2/4")
-    >>> local = step.at(action, psi, np.array([0.6, 0.48, 0.64]), np.array([0.0]))
-    >>> report = local.conserved(np.array([0.1]))
-    >>> bool(report.defect < 1e-15), int(report.rank), bool(report.iterations < 4)
-    (True, 1, True)
+    `found` is chi_m, `target` the value at which F is to be, shape (..., k), or None for F(m), and n the index of the
+    first coefficient E_n that does not vanish everywhere, or None.
     """
 
     def __init__(
@@ -260,7 +222,7 @@ class ConservingStep(LocalStep):
         self._target = found.value if target is None else target
         self._one, self._linear = one_exponential, linear
         self._unit = TOLERATED_UNITS * float(np.finfo(found.m.dtype).eps) * found.scale
-        self._last: _Made | None = None
+        self._made = LastSize(self._corrected)
         self._sigma: Any = None
 
     @property
@@ -340,18 +302,6 @@ class ConservingStep(LocalStep):
                 self._sigma = self._removing(along, z, self.n)
         return self._sigma
 
-    def _made(self, h: Values) -> _Made:
-        if isinstance(h, Traced):
-            if self._last is None or self._last.h is not h:
-                made = self._last = self._corrected(h)
-                onto: Any = made.record.left | (made.record.rank >= made.record.wanted)
-                h.tape.required.append(Traced(h.tape, onto).entry)
-            return self._last
-        last, h = self._last, np.asarray(h)
-        if last is None or h.shape != last.h.shape or h.dtype != last.h.dtype or not (h == last.h).all():
-            last = self._last = self._corrected(h.copy())
-        return last
-
     def _corrected(self, h: Values) -> _Made:
         found, action, m = self.found, self.found.action, self.found.m
         xi = self.base.factors(h)[0] if self._one else None
@@ -384,7 +334,10 @@ class ConservingStep(LocalStep):
         rank, wanted = found.rank, found.wanted
         alone = (resolved < rank) | ~found.moving | (wanted == 0)
         record = Conserved(iterations, defect.max(axis=-1), units, rank, wanted, alone)
-        return _Made(h, x, z if x is None else moved(x), record)
+        if isinstance(h, Traced):
+            onto: Any = alone | (rank >= wanted)
+            h.tape.required.append(Traced(h.tape, onto).entry)
+        return _Made(x, z if x is None else moved(x), record)
 
     def _removing(self, along: Jet, z: Jet, k: int) -> Values:
         """The zeta in V_m with chi_m(zeta) = -[t^k] F along the step z."""
@@ -498,9 +451,7 @@ def conserved_order(
     >>> result.order, result.coefficients[4]
     (3, 100899/25000000)
     """
-    if up_to is not None and (isinstance(up_to, bool) or not isinstance(up_to, int | np.integer) or up_to < 1):
-        raise InputError(f"up_to is an integer at least 1, got {up_to!r}")
-    bound = step.order + EXTRA_ORDERS if up_to is None else int(up_to)
+    bound = step.order + EXTRA_ORDERS if up_to is None else checked_integer(up_to, "up_to")
     point, dimension = read_point(field.representation, m)
     integral = FirstIntegral(F, field.representation.size)
     action = Action(field.representation, exponential)
@@ -559,7 +510,7 @@ TIME_SHIFT = 0.01
 
 
 @final
-class Conserving(Step):
+class Conserving(Derived):
     """A step that adds t^(n-1) sigma, sigma in g_m, to its generator, so that first integrals keep their values.
 
     Parameters
@@ -618,22 +569,18 @@ class Conserving(Step):
             raise InputError("the step conserves something already: give its base and a list of all integrals")
         if aim not in AIMS:
             raise InputError(f"aim is {aim!r}, expected one of {', '.join(map(repr, AIMS))}")
-        if order is not None and (isinstance(order, bool) or not isinstance(order, int | np.integer) or order < 1):
-            raise InputError(f"the order to which F is conserved is an integer at least 1, got {order!r}")
         if value is not None and aim == "previous":
             raise InputError("the step aims at the previous point: leave out the value")
         self.step, self.aim, self.linear = step, aim, bool(linear)
-        self.conserved_order: int | None = None if order is None else int(order)
+        self.conserved_order: int | None = None
+        if order is not None:
+            self.conserved_order = checked_integer(order, "the order to which F is conserved")
         self._source = F
         self._value = None if value is None else np.asarray(value, dtype=float)
 
     @property
     def order(self) -> int:
         return self.step.order
-
-    @property
-    def one_exponential(self) -> bool:
-        return self.step.one_exponential
 
     @property
     def base_order(self) -> int:
@@ -651,7 +598,7 @@ class Conserving(Step):
 
     @property
     def trace_key(self) -> Hashable:
-        return self.kept_order, self.step.trace_key
+        return self.kept_order, super().trace_key
 
     def prepare(self, action: Action, psi: Generator, m: Values, t: Values) -> Conserving:
         """The step with the checked first integrals, their target values, and n, for a run from m at times t."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable
 from dataclasses import dataclass, field
 from functools import cached_property
 from types import ModuleType
@@ -11,7 +10,7 @@ from typing import Any, final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from liehom.base.errors import InputError
+from liehom.base.errors import InputError, checked_integer
 from liehom.base.typing import BooleanArray, IntegerArray, Real, Values
 from liehom.flow.action.field import GeneratorField, check_point
 from liehom.flow.action.space import Action, IsotropyFrame
@@ -19,6 +18,7 @@ from liehom.flow.series.arrays import as_values, is_exact, is_jax, is_lazy, name
 from liehom.flow.steps.expansion import ROUND_OFF_UNITS, Clock, Flow, at_rest, flow_series, leading_order, vanishing
 from liehom.flow.steps.range_solver import RangeSolver, TightFrameSolver
 from liehom.flow.steps.step import (
+    Derived,
     Diagnostics,
     ExponentialLike,
     Factors,
@@ -362,15 +362,6 @@ class Correction:
         To first order in h, forwards and backwards: `RangeSolver.is_near_cone` with the change h rho(psi_1) m of the
         velocity. Equilibria, orbits with a tight frame (where there is no cone) and points at which isotropy makes only
         a fraction of the correction count as far from it.
-
-        Examples
-        --------
-        >>> import numpy as np
-        >>> import liehom as lh
-        >>> field = lh.GeneratorField(lh.defining(lh.so(2, 1)), ["1", "1/4 + m1", "0"])
-        >>> raised = lh.steps.correction(field, lh.Euler(), np.array([1.0, 0.0, 0.0]), order=3)
-        >>> [bool(raised.near_cone(np.array(h))) for h in (0.25, 0.75)]
-        [False, True]
         """
         xp = namespace(self.residual)
         near: BooleanArray = xp.zeros(xp.shape(self.residual), dtype=bool)
@@ -484,11 +475,8 @@ def correct(recursion: OrderRecursion, base_order: int, order: int) -> Correctio
     )
 
 
-# Corrected(step, order): a step raised to any order by isotropy, with its clock (time reparametrization) tau.
-
-
 @final
-class Corrected(Step):
+class Corrected(Derived):
     """A step corrected along the isotropy of each point, so that it captures orbits to order n.
 
     Parameters
@@ -530,20 +518,14 @@ class Corrected(Step):
         step = as_step(step)
         if isinstance(step, Corrected):
             raise InputError("the step is corrected already: give its base and the higher order")
-        if isinstance(order, bool) or not isinstance(order, int | np.integer) or order < 1:
-            raise InputError(f"the order is an integer at least 1, got {order!r}")
         if weight is not None and not weight > 0:
             raise InputError(f"the weight of the clock is a positive number, got {weight!r}")
         self.step, self.weight = step, weight
-        self._order = max(int(order), step.order)
+        self._order = max(checked_integer(order, "the order"), step.order)
 
     @property
     def order(self) -> int:
         return self._order
-
-    @property
-    def one_exponential(self) -> bool:
-        return self.step.one_exponential
 
     @property
     def base_order(self) -> int:
@@ -551,14 +533,6 @@ class Corrected(Step):
         return self.step.order
 
     uses_isotropy = True
-
-    @property
-    def prepares_by_psi(self) -> bool:
-        return self.step.prepares_by_psi
-
-    @property
-    def trace_key(self) -> Hashable:
-        return self.step.trace_key
 
     def prepare(self, action: Action, psi: Generator, m: Values, t: Values) -> Corrected:
         base = self.step.with_exponential_of(action).prepare(action, psi, m, t)
@@ -589,24 +563,7 @@ class Corrected(Step):
 
 @final
 class CorrectedStep(LocalStep):
-    """A corrected step at one point, as a function of h, with its clock.
-
-    Parameters
-    ----------
-    base : LocalStep
-    correction : Correction
-    step : Corrected
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> import liehom as lh
-    >>> field = lh.GeneratorField(lh.defining(lh.so(3)), lambda m: m * [1.0, 2.0, 3.0])
-    >>> action, psi = lh.Action(field.representation), Generator(field, 2)
-    >>> local = lh.Corrected(lh.Euler(), order=3).at(action, psi, np.array([0.6, 0.0, 0.8]), 0.0)
-    >>> int(local.correction.reached), float(local.time(0.0))
-    (3, 0.0)
-    """
+    """A corrected step at one point, as a function of h, with its clock."""
 
     def __init__(self, base: LocalStep, correction: Correction, step: Corrected) -> None:
         zero = zeros(correction.residual, np.shape(correction.residual))

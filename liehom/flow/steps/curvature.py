@@ -61,14 +61,7 @@ class Submanifold:
 
     @classmethod
     def orbits(cls, representation: Representation) -> Submanifold:
-        """The orbits of a representation; the tangent space at m is rho(g) m.
-
-        Examples
-        --------
-        >>> import liehom as lh
-        >>> Submanifold.orbits(lh.defining(lh.so(3)))
-        <submanifold: orbits of <representation 'defining' of <Lie algebra so(3) of dimension 3 over QQ> on QQ^3>>
-        """
+        """The orbits of a representation; the tangent space at m is rho(g) m."""
         if not isinstance(representation, Representation):
             raise InputError(f"expected a Representation, got {displayed(representation)}")
         action = action_map(representation)
@@ -80,7 +73,8 @@ class Submanifold:
                 raise InputError(f"the orbits have the dimensions {dimension.tolist()}: take points of one dimension")
             # combinations of generators that are independent at the start, and so next to it
             right = np.linalg.svd(action.right(start), full_matrices=False)[2][..., : int(dimension[0]), :]
-            return action.right(curve) @ np.swapaxes(right, -1, -2)
+            along: Any = action.right(curve)
+            return along @ np.swapaxes(right, -1, -2)
 
         return cls(columns, normal=False, place=None, title=f"orbits of {representation!r}")
 

@@ -88,8 +88,6 @@ def flow_series(field: GeneratorField, m: ArrayLike, order: int, t: Real = 0.0) 
 
     Raises
     ------
-    InputError
-        If the order is less than 1.
     SeriesError
         If psi cannot be expanded.
 
@@ -165,22 +163,7 @@ def step_series(action: Action, local: LocalStep, m: Values, order: int, zeta: J
 class Clock:
     """A time reparametrization ("clock") tau(t) = t + c_2 t^2 + ... and the coefficients of F_tau(t).
 
-    Parameters
-    ----------
-    flow : Flow
-    order : int
-    shape : tuple of int
-        Leading axes; each trajectory has its own clock.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> import liehom as lh
-    >>> flow = flow_series(lh.GeneratorField(lh.defining(lh.so(2)), [1]), np.array([1.0, 0.0]), 3)
-    >>> clock = Clock(flow, 3, ())
-    >>> clock.set(2, np.float64(0.5))
-    >>> clock.point(2).tolist()  # w_2 + w_1 / 2
-    [-0.5, 0.5]
+    Each trajectory of an ensemble with the leading axes `shape` has its own.
     """
 
     def __init__(self, flow: Flow, order: int, shape: tuple[int, ...]) -> None:
@@ -229,14 +212,6 @@ def leading_order(flow: Flow, order: int) -> Values:
 
     A coefficient counts as zero if it is below 64 units of round-off of the terms that it is the sum of. Exact
     coefficients are compared with 0.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> import liehom as lh
-    >>> field = lh.GeneratorField(lh.defining(lh.so(2)), ["t"])
-    >>> int(leading_order(flow_series(field, np.array([1.0, 0.0]), 3), 3))
-    2
     """
     leading: Any = np.zeros(flow.points.shape[:-1], dtype=int)
     # if w_1 = 0 for an autonomous field, the point is an equilibrium and all w_k vanish

@@ -20,7 +20,7 @@ from liehom.flow.door import Representation, Subalgebra, coadjoint
 from liehom.flow.series.arrays import as_values, is_exact, zeros
 from liehom.flow.series.jet import Jet
 from liehom.flow.steps.expansion import ROUND_OFF_UNITS, Flow, flow_series
-from liehom.flow.steps.step import ExponentialLike, Step
+from liehom.flow.steps.step import Step
 from liehom.flow.tracing.array import Traced
 
 # FirstIntegral: a map F: M -> W that the flow conserves (Definition 8), with its derivative by Jets.
@@ -123,7 +123,7 @@ class FirstIntegral:
         """Values (..., k) in the shape of the user's F: (...,) if F is a number."""
         return value[..., 0][()] if self.scalar else value
 
-    def check(self, flow: Flow, order: int, scale: Values | None = None) -> None:
+    def check(self, flow: Flow, order: int) -> None:
         """Check that the Taylor coefficients 1, ..., order of F along the flow vanish.
 
         Parameters
@@ -131,19 +131,6 @@ class FirstIntegral:
         flow : Flow
             Its expansion at a point or several, at least to this order.
         order : int
-        scale : array of shape (..., k), optional
-            The size of F to which derivatives are compared; |F| + |DF| |m| if it is not given.
-
-        Examples
-        --------
-        >>> import numpy as np
-        >>> import liehom as lh
-        >>> field, m = lh.GeneratorField(lh.defining(lh.so(2)), [1]), np.array([1.0, 0.0])
-        >>> FirstIntegral("m0**2 + m1**2", 2).check(lh.steps.flow_series(field, m, 3), 3)
-        >>> FirstIntegral("m1", 2).check(lh.steps.flow_series(field, m, 3), 3)
-        Traceback (most recent call last):
-        ...
-        liehom.base.errors.InputError: F is not a first integral: DF(m) X(m) = [1.] at m = [1. 0.], expected 0
         """
         series = self(flow.points)
         if not isinstance(series, Jet):
@@ -151,7 +138,7 @@ class FirstIntegral:
         m = flow.point(0)
         exact = is_exact(m)
         if not exact:
-            unit = _largest(*self.gradient(m), m) if scale is None else scale
+            unit = _largest(*self.gradient(m), m)
             sizes = [np.linalg.norm(np.asarray(flow.point(k), dtype=float), axis=-1) for k in range(order + 1)]
         rate: Any = 0.0
         turned: Any = 0.0
@@ -310,15 +297,6 @@ class Conservation:
 
         A time-dependent field that vanishes at t moves the point nevertheless. The displacement then has the direction
         of the leading coefficient of the flow. At an equilibrium it is round-off, and nothing changes.
-
-        Examples
-        --------
-        >>> import numpy as np
-        >>> import liehom as lh
-        >>> field = lh.GeneratorField(lh.adjoint(lh.so(3)), ["-t*m0", "-t*m1/2", "-t*m2/4"])
-        >>> chi = conservation_map(field, lh.Euler(), [0.6, 0.48, 0.64], "m0**2 + m1**2/2 + m2**2/4", t=0.0)
-        >>> int(chi.rank), int(chi.toward(field.vector(chi.m, 1.0)).rank)
-        (0, 1)
         """
         other = copy(self)
         moved = _length(displacement) > ROUND_OFF_UNITS * float(np.finfo(self.m.dtype).eps) * _length(self.m)
@@ -341,15 +319,6 @@ class Conservation:
 
         With `directions` (..., dim g, q) in place of the basis, its shape is (..., k, q). It is chi_m for the
         displacement rho(xi_1) m.
-
-        Examples
-        --------
-        >>> import numpy as np
-        >>> import liehom as lh
-        >>> field = lh.GeneratorField(lh.adjoint(lh.so(3)), ["-m0", "-m1/2", "-m2/4"])
-        >>> chi = conservation_map(field, lh.Euler(), [0.6, 0.48, 0.64], "m0**2 + m1**2/2 + m2**2/4")
-        >>> chi.along(np.ones(3)).shape
-        (1, 1)
         """
         pulled = self.action.infinitesimal.right_transposed(displacement[..., None, :], self.gradient)
         return self.factor * (pulled @ (self.basis if directions is None else directions))
@@ -410,11 +379,6 @@ class Conservation:
             inverse = np.linalg.pinv(_double(matrix), rcond=1e-12)
         return (directions @ (inverse @ (target / units)[..., None]))[..., 0]
 
-    def range(self, index: tuple[int, ...] = ()) -> Array:
-        """Orthonormal basis of chi_m(g_m) in W, as columns, shape (k, rank), at the point of this index."""
-        left, sizes, _ = np.linalg.svd(_double(self.matrix[index]))
-        return left[:, : min(int(np.asarray(self.rank)[index]), len(sizes))]
-
     def unreachable(self, index: tuple[int, ...] = ()) -> Array:
         """Covectors z, as rows, shape (wanted - rank, k), with z chi_m = 0 although z DF is not 0 on the orbit.
 
@@ -468,7 +432,6 @@ def conservation_map(
     F: IntegralSource,
     *,
     t: Real = 0.0,
-    exponential: ExponentialLike = "exp",
 ) -> Conservation:
     """`Conservation`: the map chi_m: g_m -> W, the change of E_n by isotropy t^(n-1) zeta in a step.
 
@@ -481,12 +444,11 @@ def conservation_map(
     F : callable, string, sympy expression or list of these
         See `FirstIntegral`.
     t : float or array of shape (...,)
-    exponential : str, Exponential or callable
 
     Returns
     -------
     Conservation
-        Its matrix in an orthonormal basis of g_m, its rank and range, and the combinations that it does not reach.
+        Its matrix in an orthonormal basis of g_m, its rank, and the combinations that it does not reach.
 
     Notes
     -----
@@ -511,7 +473,7 @@ def conservation_map(
     dimension = check_point(field.representation, point)
     integral = FirstIntegral(F, field.representation.size)
     integral.check(flow_series(field, point, 1, t), 1)
-    action = Action(field.representation, exponential)
+    action = Action(field.representation)
     frame, factor = action.isotropy_frame(point, dimension), 0.5 if step.one_exponential else 1.0
     return Conservation(action, integral, frame, point, field.psi(point, t), factor)
 
@@ -587,7 +549,7 @@ class MomentumMap:
     -----
     J is linear on coadjoint orbits, J(m) = m restricted to h, and quadratic on V: J(m)(eta) = Omega(rho(eta) m, m) / 2.
     It is equivariant. An instance is a function of m, with values of shape (..., dim h), on arrays, Jets and tracers.
-    `Conserving` takes it as an integral. `component` gives one of its components.
+    `Conserving` takes it as an integral.
 
     Examples
     --------
@@ -640,33 +602,8 @@ class MomentumMap:
         parts: Any = self._quadratic
         return np.stack([np.sum(m * (m @ part), axis=-1) for part in parts], axis=-1)
 
-    def component(self, eta: ArrayLike) -> _Component:
-        """The function m -> J(m)(eta), of shape (...,), for the coefficients of eta in the basis of h.
-
-        Examples
-        --------
-        >>> import liehom as lh
-        >>> J = MomentumMap(lh.coadjoint(lh.so(3)))
-        >>> float(J.component([0, 0, 1])(np.array([1.0, 2.0, 3.0])))
-        3.0
-        """
-        weights = np.asarray(eta, dtype=float)
-        if weights.shape != (self.dimension,):
-            raise ShapeError(f"eta has shape {weights.shape}, expected ({self.dimension},)")
-        return _Component(self, weights)
-
     def __repr__(self) -> str:
         return f"<momentum map of an algebra of dimension {self.dimension} on {displayed(self.representation)}>"
-
-
-class _Component:
-    """A component of a momentum map."""
-
-    def __init__(self, momentum: MomentumMap, weights: Array) -> None:
-        self.momentum, self.weights = momentum, weights
-
-    def __call__(self, m: Values) -> Values:
-        return self.momentum(m) @ self.weights
 
 
 def _quadratic(matrices: Array, form: Array) -> Array:

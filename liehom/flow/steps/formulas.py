@@ -2,27 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from functools import reduce
-from itertools import combinations_with_replacement
-from operator import mul
 from typing import Any, final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from liehom.base.errors import InputError, ShapeError, SingularError
-from liehom.base.typing import Expression, ObjectArray, Real, Values
+from liehom.base.errors import InputError, ShapeError
+from liehom.base.typing import ObjectArray, Real, Values
 from liehom.flow.action.field import GeneratorField
 from liehom.flow.action.space import Action
-from liehom.flow.door import QQ, RationalFunction, Representation
+from liehom.flow.door import RationalFunction, Representation
 from liehom.flow.series.arrays import as_values, is_jax, namespace
 from liehom.flow.steps.expansion import Clock, Flow, flow_series, step_series
 from liehom.flow.steps.step import ExponentialLike, Generator, Step, zero_series
 from liehom.flow.steps.symbolic_problem import (
     ExpressionLike,
-    FieldPolynomial,
     SymbolicRange,
     Symbols,
     object_array,
@@ -30,70 +26,7 @@ from liehom.flow.steps.symbolic_problem import (
     simple,
 )
 
-# A formula as a polynomial in named functions, and as a numpy function.
-#     f = sum of c_i * (product of named functions),   c_i rational,
-# The coefficients c_i are found by linear algebra on normal forms.
-
 TERMS_PER_CHUNK = 100
-
-
-def ansatz(symbols: Symbols, invariants: Mapping[Any, Any], target: RationalFunction, degree: int) -> Expression:
-    """The polynomial in the invariants, with rational coefficients and terms of low degree, that equals the target, a
-    sympy expression; terms whose degree in the parameters cannot occur are omitted.
-    """
-    import sympy
-
-    names = [key if hasattr(key, "free_symbols") else sympy.Symbol(str(key)) for key in invariants]
-    values = [symbols.element(x) for x in invariants.values()]
-    terms: list[tuple[Any, RationalFunction]] = []
-    for d in range(degree + 1):
-        for chosen in combinations_with_replacement(range(len(values)), d):
-            product = reduce(mul, (values[i] for i in chosen), symbols.field.one)
-            terms.append((sympy.Mul(*(names[i] for i in chosen)), product.cancelled()))
-    wanted = _degrees(symbols, target)
-    terms = [(e, x) for e, x in terms if wanted is None or _degrees(symbols, x) in (wanted, None)]
-    solution = _combination([x for _, x in terms], target)
-    if solution is None:
-        raise InputError(
-            f"the coefficient is not a polynomial of degree {degree} in {', '.join(map(str, names))} with rational "
-            "coefficients: allow a higher degree, or name more functions (its denominator, for example)"
-        )
-    return sympy.Add(*(sympy.Rational(str(c)) * e for (e, _), c in zip(terms, solution, strict=True)))
-
-
-def _degrees(symbols: Symbols, x: RationalFunction) -> int | None:
-    """The degree in the parameters if all terms have the same, else None."""
-    first = symbols.size + 1
-
-    def of(p: FieldPolynomial) -> set[int]:
-        return {sum(map(int, m[first:])) for m in p.monoms()}
-
-    parts = [(of(x.numerator), 1)] + [(of(symbols.field.atoms[i]), -k) for i, k in x.powers]
-    if any(len(degrees) != 1 for degrees, _ in parts):
-        return None
-    return sum(k * next(iter(degrees)) for degrees, k in parts)
-
-
-def _combination(elements: list[RationalFunction], target: RationalFunction) -> list[Any] | None:
-    """List of rational numbers c with target = sum c_i elements_i, or None."""
-    if not elements:
-        return None
-    powers: dict[int, int] = {}
-    for x in (*elements, target):
-        for i, k in x.powers:
-            powers[i] = max(k, powers.get(i, 0))
-    common = tuple(sorted(powers.items()))
-    tops = [{tuple(map(int, e)): c for e, c in x.over(common).terms()} for x in (*elements, target)]
-    monomials = sorted({e for top in tops for e in top})
-    if not monomials:
-        return [QQ.zero] * len(elements)
-    rows = [[top.get(e, QQ.zero) for top in tops] for e in monomials]
-    left = QQ.matrix([row[:-1] for row in rows], (len(rows), len(elements)))
-    try:
-        solution = left.solve(QQ.matrix([[row[-1]] for row in rows], (len(rows), 1)))
-    except SingularError:
-        return None
-    return [row[0] for row in solution.to_rows()]
 
 
 def compiled_function(symbols: Symbols, elements: Sequence[RationalFunction]) -> Callable[..., Any]:
@@ -205,51 +138,8 @@ class ClosedForm:
     _elements: dict[tuple[str, int], Any] = field(repr=False)
 
     def equal(self, a: ExpressionLike, b: ExpressionLike) -> bool:
-        """Whether two expressions in the symbols are equal wherever the constraints hold, by proof, not by sampling.
-
-        Examples
-        --------
-        >>> import liehom as lh
-        >>> from liehom.flow.steps import closed_form
-        >>> top = ["a*m2**3 - a*m2", "-a*m1*m2**2", "a*m0*m2**2"]
-        >>> formula = closed_form(lh.defining(lh.so(3)), top, lh.Euler(), 2)
-        >>> formula.equal(formula.factor[1], "a*(m0**2 + m1**2 - 1)")
-        True
-        """
+        """Whether two expressions in the symbols are equal wherever the constraints hold, by proof, not by sampling."""
         return bool(self.symbols.element(a) == self.symbols.element(b))
-
-    def in_terms_of(self, invariants: Mapping[Any, Any], k: int | str | None = None, *, degree: int = 3) -> Expression:
-        """The coefficient factor[k], or c_2 for k = "clock 2" etc., as a polynomial in named functions.
-
-        Parameters
-        ----------
-        invariants : mapping from symbol or name to expression
-            Rational functions of the coordinates and parameters, such as {"h": "w1*m0**2 + ...", "R": ...}.
-        k : int or str, optional
-            The coefficient; by default the last factor.
-        degree : int
-            The largest degree of the polynomial.
-
-        Examples
-        --------
-        >>> import liehom as lh
-        >>> from liehom.flow.steps import closed_form
-        >>> top = ["a*m2**3 - a*m2", "-a*m1*m2**2", "a*m0*m2**2"]
-        >>> formula = closed_form(lh.defining(lh.so(3)), top, lh.Euler(), 2)
-        >>> formula.in_terms_of({"a": "a", "s": "m0**2 + m1**2"})
-        a*s - a
-        """
-        return ansatz(self.symbols, invariants, self._chosen(k), degree)
-
-    def _chosen(self, k: int | str | None) -> RationalFunction:
-        if isinstance(k, str) and k.startswith("clock "):
-            key: tuple[str, int] = ("clock", int(k.removeprefix("clock ")))
-        else:
-            last = max((i for name, i in self._elements if name == "factor"), default=0)
-            key = ("factor", last if k is None else int(k))
-        if key not in self._elements:
-            raise InputError(f"there is no {key[0]} with index {key[1]}: there are {sorted(self._elements)}")
-        return self._elements[key]
 
     def function(self, k: int | None = None) -> Callable[..., Any]:
         """Function (m, t=0, **parameters) -> zeta_k, an array of shape (..., dim g).
@@ -279,17 +169,8 @@ class ClosedForm:
         return compiled_function(self.symbols, self._elements.get(("zeta", last if k is None else k), zeros))
 
     def clock_function(self, k: int | None = None) -> Callable[..., Any]:
-        """Function (m, t=0, **parameters) -> c_k, an array of shape (...,); by default for the last k.
-
-        Examples
-        --------
-        >>> import liehom as lh
-        >>> from liehom.flow.steps import closed_form
-        >>> formula = closed_form(lh.defining(lh.so(3)), ["a*m0", "0", "0"], lh.Euler(), 2)
-        >>> float(formula.clock_function()([0.6, 0.48, 0.64], a=2.0).round(12))
-        0.48
-        """
-        run = compiled_function(self.symbols, [self._chosen(f"clock {max(self.clock) if k is None else k}")])
+        """Function (m, t=0, **parameters) -> c_k, an array of shape (...,); by default for the last k."""
+        run = compiled_function(self.symbols, [self._elements["clock", max(self.clock) if k is None else k]])
         return lambda m, t=0.0, **parameters: run(m, t, **parameters)[..., 0]
 
     def latex(self) -> str:
@@ -346,7 +227,6 @@ def closed_form(
     exponential: ExponentialLike = "exp",
     constraints: Sequence[Any] | None = None,
     isotropy: Sequence[Any] | None = None,
-    parameters: Sequence[Any] | None = None,
 ) -> ClosedForm:
     """`ClosedForm`: the isotropy correction and the clock that raise a step to a given order, as formulas.
 
@@ -366,18 +246,11 @@ def closed_form(
         rho are skew-symmetric, else none.
     isotropy : sequence of dim g expressions, optional
         If g_m has dimension 1, the generator of g_m in which to write the correction; by default one is computed.
-    parameters : sequence of symbols or names, optional
-        The parameters; other symbols then raise `InputError`.
 
     Raises
     ------
     FieldError
         If the representation is not over QQ, or a coefficient is a float.
-    InputError
-        If psi has unknown symbols or is not a rational function of them; if the constraints are not invariant; if
-        `isotropy` does not generate g_m; if all points are equilibria, or the step is not consistent with the flow.
-    ShapeError
-        If psi or `isotropy` has the wrong length.
 
     Notes ----- Theorem 5 with its factor, one order after the other. The solution is the one with the smallest |c| and,
     among those, the smallest |zeta|, as in `liehom.steps.correction`. If the system has no solution, `reached` is below
@@ -398,7 +271,7 @@ def closed_form(
     >>> formula.equal(formula.factor[1], f"({h} - w1)*({h} - w2)*({h} - w3)/{v2}"), formula.residual_is_zero
     (True, True)
     """
-    symbols, components = read_symbols(representation, psi, constraints, parameters, isotropy or ())
+    symbols, components = read_symbols(representation, psi, constraints, isotropy or ())
     generator = GeneratorField(representation, symbols.generator(components))
     action = Action(representation, exponential)
     solver = SymbolicRange(action, symbols.field, object_array(symbols.point))

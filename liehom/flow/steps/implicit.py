@@ -261,7 +261,7 @@ def _newton_iterated(
             against = active & ~free & ((step * residual).sum(axis=axes, keepdims=True) <= 0)
             against = against & (_norm(step, axes) > GUIDED * reach)
             if bool(against.any()):
-                damping = np.where(against, np.maximum(4 * damping, system.size()), damping)
+                damping = np.where(against, np.maximum(4 * damping, system.size), damping)
                 step = system.solve(residual, damping)
         length = _norm(step, axes)
         limited = length > reach
@@ -273,11 +273,11 @@ def _newton_iterated(
         largest = np.abs(trial).max(axis=axes, keepdims=True, initial=0.0)
         small = change <= 1e4 * eps * np.maximum(largest, 1.0)  # the residual may be round-off
         good = active & ((new <= MAX_GROWTH * size) | (small & np.isfinite(new)))
-        exact = new <= eps * system.size() * largest  # the round-off of F
+        exact = new <= eps * system.size * largest  # the round-off of F
         done = (change <= 2 * eps * largest) | (small & ((change >= before / 2) | exact))
         done = good & done & (damping == 0) & ~limited
         ratio = np.where(good, new / np.where(size > 0, size, 1.0), np.inf)
-        damping = np.where(good, damping * np.minimum(ratio, 1.0), np.maximum(4 * damping, system.size()))
+        damping = np.where(good, damping * np.minimum(ratio, 1.0), np.maximum(4 * damping, system.size))
         crawls = good & ~free & (damping > 0) & (ratio > 0.5) & (length < CRAWLS * reach)
         free = free | crawls
         damping = np.where((damping < 1e-3) | small | crawls, 0.0, damping)
@@ -297,7 +297,7 @@ class _System:
         self.equation, self.axes, self.at = equation, axes, x
         self.dense = len(axes) == 2 and x.shape[0] * x.shape[-1] <= MAX_DENSE
         self.jacobian: Array = np.zeros(())
-        self._size: Array = np.zeros(np.shape(wanted))
+        self.size: Array = np.zeros(np.shape(wanted))  # a norm of F', at least 1, shape (1, ..., 1)
 
     def refresh(self, x: Array, stale: BooleanArray) -> None:
         """Evaluate the derivative at x for the trajectories for which it is `stale`."""
@@ -306,7 +306,7 @@ class _System:
         if not self.dense:
             self.at = np.where(stale, x, self.at)
             moved: Any = self.equation.along(self.at, _unit(x, self.axes))
-            self._size = np.maximum(1.0, _norm(moved, self.axes))
+            self.size = np.maximum(1.0, _norm(moved, self.axes))
             return
         blocks = np.where(stale[..., None], self.equation.blocks(x), 0.0)
         s, n = x.shape[0], x.shape[-1]
@@ -314,29 +314,21 @@ class _System:
         derivative = np.einsum("i...ab,ij->...iajb", blocks, self.equation.matrix)
         derivative = derivative.reshape(*x.shape[1:-1], s * n, s * n)
         self.jacobian = np.where(stale.reshape(*x.shape[1:-1], 1, 1), derivative, self.jacobian)
-        self._size = np.maximum(1.0, np.sqrt((self.jacobian**2).sum(axis=(-1, -2)))).reshape(np.shape(stale))
-
-    def _along(self, v: Array) -> Array:
-        moved: Any = self.equation.along(self.at, v)
-        return moved
+        self.size = np.maximum(1.0, np.sqrt((self.jacobian**2).sum(axis=(-1, -2)))).reshape(np.shape(stale))
 
     def repels(self) -> BooleanArray:
         """Whether F' has a real eigenvalue above 1, bool (1, ..., 1); False for large systems (not computed)."""
         if not self.dense:
-            return np.zeros(np.shape(self._size), dtype=bool)
+            return np.zeros(np.shape(self.size), dtype=bool)
         jacobian = np.where(np.isfinite(self.jacobian), self.jacobian, 0.0).astype(np.float64, copy=False)
         values: Any = np.linalg.eigvals(jacobian)
-        return ((values.imag == 0) & (values.real > 1)).any(axis=-1).reshape(np.shape(self._size))
-
-    def size(self) -> Array:
-        """A norm of F', at least 1, shape (1, ..., 1)."""
-        return self._size
+        return ((values.imag == 0) & (values.real > 1)).any(axis=-1).reshape(np.shape(self.size))
 
     def solve(self, residual: Array, damping: Array) -> Array:
         """The steps, of the shape of the residual; 0 where the residual is not finite."""
         right = np.where(np.isfinite(residual).all(axis=self.axes, keepdims=True), residual, 0.0)
         if not self.dense:
-            return gmres(lambda v: v * (1 + damping) - self._along(v), right, self.axes)
+            return gmres(lambda v: v * (1 + damping) - self.equation.along(self.at, v), right, self.axes)
         s, *lead, n = residual.shape
         flat = np.moveaxis(right, 0, -2).reshape(*lead, s * n, 1)
         unit = np.eye(s * n, dtype=right.dtype)
@@ -481,8 +473,6 @@ def _is_small(change: Tracer, x: Tracer) -> Tracer:
     return jnp.max(jnp.abs(change), axis=(0, -1), keepdims=True) <= bound
 
 
-# solve_implicitly: the solution of the equation of an implicit step, on arrays, Jets, tracers and JAX arrays.
-
 MAX_ITERATIONS = 200
 SLOW = 0.4
 """A fixed point iteration that multiplies the change by more than this is given up, and Newton's method begins."""
@@ -495,7 +485,6 @@ def solve_implicitly(
     start: Values,
     h: Real,
     *,
-    stacked: bool = False,
     rows: Sequence[SparseRow] | None = None,
     reach: float = 1.0,
     hasty: bool = False,
@@ -511,8 +500,6 @@ def solve_implicitly(
     function : callable
     start : array of shape (..., n), or () for a number
     h : float, array, Jet or tracer
-    stacked : bool
-        Whether the first axis is not one of the ensemble, as for unknowns that are matrices.
     rows : sequence of sparse rows, optional
         Coefficients a_ij of a Runge-Kutta method with S stages. The first axis of x is then that of the stages, and
         x_i = function([y_1, ..., y_S])_i with y_i = sum_j a_ij x_j, or None for an empty row; stage i of `function`
@@ -544,38 +531,22 @@ def solve_implicitly(
     """
     if isinstance(h, Jet):
         return _solved_on_jets(function, start, h.order, rows)
+    number = rows is None and np.ndim(start) == 0
     if rows is not None:
         equation = Equation(function, rows)
+    elif number:
+        start, equation = start[None, None], Equation(lambda y: [function(y[0][..., 0])[..., None]], [((0, 1.0),)])
     else:
-        shape, start = np.shape(start), _flat(start, stacked)[None]
-        equation = Equation(lambda y: [_flat(function(_shaped(y[0], shape, stacked)), stacked)], [((0, 1.0),)])
+        start, equation = start[None], Equation(lambda y: [function(y[0])], [((0, 1.0),)])
     tape = h.tape if isinstance(h, Traced) else start.tape if isinstance(start, Traced) else None
+    x: Any
     if tape is not None:
-        found: Any = solved_on_tape(equation, start, tape, SLOW, reach)
+        x = solved_on_tape(equation, start, tape, SLOW, reach)
+    elif is_jax(start):
+        x = solved_by_jax(equation, start, reach)
     else:
-        found = (
-            solved_by_jax(equation, start, reach)
-            if is_jax(start)
-            else _solved(equation, np.asarray(start), reach, hasty)
-        )
-    return found if rows is not None else _shaped(found[0], shape, stacked)
-
-
-def _flat(x: Stage, stacked: bool) -> Stage:
-    """x with all unknowns of a trajectory on the last axis."""
-    if np.ndim(x) == 0:
-        return x[..., None]
-    if not stacked:
-        return x
-    return np.concatenate([x[i] for i in range(np.shape(x)[0])], axis=-1)
-
-
-def _shaped(y: Stage, shape: tuple[int, ...], stacked: bool) -> Stage:
-    """The inverse of `_flat`."""
-    if not shape:
-        return y[..., 0]
-    n = shape[-1]
-    return np.stack([y[..., i * n : (i + 1) * n] for i in range(shape[0])]) if stacked else y
+        x = _solved(equation, np.asarray(start), reach, hasty)
+    return x if rows is not None else x[0][..., 0] if number else x[0]
 
 
 def reach_of(action: Action) -> float:

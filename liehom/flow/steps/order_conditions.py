@@ -18,7 +18,7 @@ import numpy as np
 import numpy.typing as npt
 from numpy.typing import ArrayLike
 
-from liehom.base.errors import InputError, ShapeError
+from liehom.base.errors import InputError, ShapeError, checked_integer
 from liehom.base.typing import Real
 from liehom.flow.action.field import GeneratorField
 from liehom.flow.action.space import Action
@@ -143,10 +143,6 @@ def chi(
 
     Raises
     ------
-    InputError
-        If n is less than 1, or a coefficient of zeta is not in g_m.
-    ShapeError
-        If zeta has another shape.
     FieldError
         If an exact coordinate is not in the representation's field.
 
@@ -186,10 +182,6 @@ def order_condition(
 
     Raises
     ------
-    InputError
-        If the step agrees with the flow to a lower order only.
-    ShapeError
-        If m is not one point.
     FieldError
         If an exact coordinate is not in the representation's field.
 
@@ -238,8 +230,7 @@ class _Expansion:
         t: Real,
         exponential: ExponentialLike,
     ) -> None:
-        if isinstance(n, bool) or not isinstance(n, int | np.integer) or n < 1:
-            raise InputError(f"the order is an integer at least 1, got {n!r}")
+        checked_integer(n, "the order")
         self.representation = field.representation
         self.point, self.orbit_dimension = read_point(field.representation, m)
         self.exact, self.one_exponential = is_exact(self.point), step.one_exponential

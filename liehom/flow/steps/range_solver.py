@@ -23,6 +23,7 @@ import numpy as np
 from liehom.base.errors import InternalError
 from liehom.base.typing import BooleanArray, IntegerArray, Values
 from liehom.flow.action.frames import orthogonal_decomposition
+from liehom.flow.action.maps import applied
 from liehom.flow.action.space import Action, IsotropyFrame
 from liehom.flow.series.arrays import across_lanes, is_lazy, namespace
 from liehom.flow.tracing.array import Traced
@@ -97,11 +98,11 @@ class RangeSolver:
         moved = action.infinitesimal(xp.swapaxes(self._basis, -1, -2), unit[..., None, :])
         self._action, self._factor = action, factor
         self._moves = factor * (self._down @ xp.swapaxes(moved, -1, -2))
-        self._unit = _apply(self._down, unit)
+        self._unit = applied(self._down, unit)
         self._cutoff = factor * RANK_RTOL * action.max_norm
         self._inverse = _pseudo_inverse(xp, self._moves, self._cutoff)
         self._reaching = self._generator(self._unit)  # M^+ u
-        rest = self._unit - _apply(self._moves, self._reaching)
+        rest = self._unit - applied(self._moves, self._reaching)
         square = xp.sum(rest * rest, axis=-1, keepdims=True)
         self._determined = square > REACHED_RTOL**2
         self._rest = xp.where(self._determined, rest / xp.where(self._determined, square, 1.0), 0.0)
@@ -197,9 +198,9 @@ class RangeSolver:
     ) -> Values:
         """Whether the ratio of determinants of `is_near_cone` falls below its bound."""
         xp = self._xp
-        v = _apply(down, change)
+        v = applied(down, change)
         v = v - xp.sum(v * unit, axis=-1, keepdims=True) * unit
-        along = _apply(xp.swapaxes(down, -1, -2), v)
+        along = applied(xp.swapaxes(down, -1, -2), v)
         turned = self._action.infinitesimal(xp.swapaxes(basis, -1, -2), along[..., None, :])
         moved = self._factor * (down @ xp.swapaxes(turned, -1, -2))
         gram = moves @ xp.swapaxes(moves, -1, -2) + unit[..., :, None] * unit[..., None, :]
@@ -222,12 +223,12 @@ class RangeSolver:
 
     def solve(self, right: Values) -> tuple[Values, Values, Values]:
         """(zeta (..., dim g), c (...,), residual (..., N)); the residual is r - (e rho(zeta) w - l c w), tangential."""
-        target = _apply(self._down, right / self._size)
+        target = applied(self._down, right / self._size)
         c = self._clock(target)
         moved = target + self._leading * c[..., None] * self._unit
         zeta = self._generator(moved)
-        residual = moved - _apply(self._moves, zeta)
-        return _apply(self._basis, zeta), c, _apply(self._frame.tangent, residual * self._size)
+        residual = moved - applied(self._moves, zeta)
+        return applied(self._basis, zeta), c, applied(self._frame.tangent, residual * self._size)
 
     def _clock(self, target: Values) -> Values:
         c = -self._xp.sum(self._rest * target, axis=-1) / self._leading
@@ -242,14 +243,14 @@ class RangeSolver:
     def _generator(self, target: Values) -> Values:
         """The product M^+ r, in the basis of the frame."""
         if target.dtype != np.longdouble:
-            return _apply(self._inverse, target)
+            return applied(self._inverse, target)
         # M^T G^2 M M^T with G = (M M^T)^+ is M^+, also if G is known in lower precision: the iteration stays in the
         # range of M^T, and its fixed points have M^T (r - M y) = 0
         turned = np.swapaxes(self._moves, -1, -2)
         y = np.zeros((*np.broadcast_shapes(target.shape[:-1], turned.shape[:-2]), turned.shape[-2]), target.dtype)
         for _ in range(REFINEMENTS):
-            left = _apply(self._moves, _apply(turned, target - _apply(self._moves, y)))
-            y = y + _apply(turned, _apply(self._inverse, left))
+            left = applied(self._moves, applied(turned, target - applied(self._moves, y)))
+            y = y + applied(turned, applied(self._inverse, left))
         return y
 
 
@@ -285,7 +286,7 @@ class TightFrameSolver:
         y = across_lanes(turned, tight.inverse / (self._factor * tight.isotropy)) * self._over[..., None]
         if not tight.symmetric:
             lift = action.isotropy_frame(self._m, self._dimension).lift
-            y = y - _apply(lift, action.infinitesimal(y, self._m))
+            y = y - applied(lift, action.infinitesimal(y, self._m))
         return y, -(inner(w, right) * self._over) / self._leading, None
 
     @property
@@ -344,10 +345,6 @@ def _polished(basis: Values, gram: Values) -> Values:
     """A basis orthonormal in extended precision (`numpy.longdouble`), from one orthonormal in double precision."""
     square = np.swapaxes(basis, -1, -2) @ gram @ basis
     return basis @ (1.5 * np.eye(basis.shape[-1], dtype=basis.dtype) - square / 2)
-
-
-def _apply(matrix: Values, vector: Values) -> Values:
-    return (matrix @ vector[..., None])[..., 0]
 
 
 def _normalized(xp: ModuleType, vector: Values) -> tuple[Values, Values]:

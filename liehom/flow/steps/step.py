@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Hashable, Sequence
 from copy import copy
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias, cast, final
+from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeAlias, TypeVar, cast, final
 
 import numpy as np
 import numpy.typing as npt
@@ -252,6 +252,28 @@ class LocalStep:
         return np.zeros(np.shape(h), dtype=bool)
 
 
+Result = TypeVar("Result")
+
+
+@final
+class LastSize(Generic[Result]):
+    """A function of the step size that keeps its last result."""
+
+    def __init__(self, compute: Callable[[Values], Result]) -> None:
+        self._compute = compute
+        self._h: Any = None
+        self._last: list[Result] = []
+
+    def __call__(self, h: Values) -> Result:
+        """The result for the size h; arrays are compared by value, because their owner may have changed them."""
+        arrays = isinstance(h, np.ndarray) and isinstance(self._h, np.ndarray)
+        same = h is self._h if not arrays else h.dtype == self._h.dtype and np.array_equal(h, self._h)
+        if not (same and self._last):
+            self._last = [self._compute(h)]
+            self._h = h.copy() if isinstance(h, np.ndarray) else h
+        return self._last[0]
+
+
 def polynomial(coefficients: Sequence[Term], h: Values) -> Term:
     """Value at h of a polynomial, by Horner's rule."""
     total = None
@@ -427,14 +449,7 @@ class Step(ABC):
         return self
 
     def with_prepared(self, **data: object) -> Self:
-        """A copy of the step with further attributes, for `prepare`; also of frozen steps.
-
-        Examples
-        --------
-        >>> import liehom as lh
-        >>> lh.Euler().with_prepared(table=(1, 2)).table
-        (1, 2)
-        """
+        """A copy of the step with further attributes, for `prepare`; also of frozen steps."""
         step = copy(self)
         for name, value in data.items():
             object.__setattr__(step, name, value)
@@ -473,6 +488,24 @@ def as_step(step: StepLike) -> Step:
     return cast(Step, provider("step by name")(step))
 
 
+class Derived(Step, ABC):
+    """A step that changes another one, `step`, with the properties that it has from it."""
+
+    step: Step
+
+    @property
+    def one_exponential(self) -> bool:
+        return self.step.one_exponential
+
+    @property
+    def prepares_by_psi(self) -> bool:
+        return self.step.prepares_by_psi
+
+    @property
+    def trace_key(self) -> Hashable:
+        return self.step.trace_key
+
+
 class OneExponential(Step, ABC):
     """A step with one exponential: `generator` in place of `factors`.
 
@@ -502,14 +535,7 @@ class OneExponential(Step, ABC):
 
 
 def step_variable(order: int, like: Values) -> Jet:
-    """The Jet h = 0 + 1 t with values of shape (1,) and numbers of the kind of `like`.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> step_variable(2, np.zeros(3)).coefficients.ravel().tolist()
-    [0.0, 1.0, 0.0]
-    """
+    """The Jet h = 0 + 1 t with values of shape (1,) and numbers of the kind of `like`."""
     zero = zeros(like, (1,))
     return Jet.from_node(Node(order, zero, [None, zero + 1, *[None] * (order - 1)][: order + 1]))
 
@@ -520,9 +546,6 @@ def zero_series(zero: Values, order: int) -> Jet:
     for _ in range(order):
         series.extend(None)
     return series
-
-
-# A point as floats or as exact numbers of the representation's field.
 
 
 def read_point(representation: Representation, m: ArrayLike) -> tuple[npt.NDArray[Any], IntegerArray]:

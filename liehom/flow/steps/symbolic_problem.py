@@ -198,7 +198,6 @@ def read_symbols(
     representation: Representation,
     psi: Sequence[ExpressionLike],
     constraints: Sequence[Any] | None,
-    parameters: Sequence[Any] | None,
     others: Sequence[Any] = (),
 ) -> tuple[Symbols, list[Any]]:
     """(`Symbols` of a problem, components of psi as expressions)."""
@@ -213,7 +212,6 @@ def read_symbols(
     if len(entries) not in (representation.given, dimension):
         raise ShapeError(f"psi has {len(entries)} components, expected {dimension}")
     base = [*(f"m{i}" for i in range(n)), "t"]
-    declared = None if parameters is None else [_declared(p, base) for p in parameters]
     components = [read_expression(x, f"psi[{i}]") for i, x in enumerate(entries)]
     polynomials = _default_constraints(representation) if constraints is None else list(constraints)
     bounds = [read_expression(x, f"constraints[{i}]") for i, x in enumerate(polynomials)]
@@ -223,19 +221,11 @@ def read_symbols(
     named = [(f"psi[{i}]", x) for i, x in enumerate(components)]
     named += [(f"constraints[{i}]", x) for i, x in enumerate(bounds)]
     for what, name in [(what, name) for what, x in named for name in sorted(s.name for s in x.free_symbols)]:
-        if name not in base and (name not in declared if declared is not None else _COORDINATE.fullmatch(name)):
-            raise InputError(f"{what} has the unknown symbol {name}; known are {', '.join([*base, *(declared or [])])}")
-    names = (*base, *(sorted(set(symbols) - set(base), key=_natural) if declared is None else declared))
-    own = {p.name: p for p in parameters or [] if hasattr(p, "name")}
-    known = {name: symbols.get(name, own.get(name, sympy.Symbol(name))) for name in names}
+        if name not in base and _COORDINATE.fullmatch(name):
+            raise InputError(f"{what} has the unknown symbol {name}; known are {', '.join(base)}")
+    names = (*base, *sorted(set(symbols) - set(base), key=_natural))
+    known = {name: symbols.get(name, sympy.Symbol(name)) for name in names}
     return _with_grading(representation, names, n, known, bounds, components), components
-
-
-def _declared(parameter: Expression | str, taken: Sequence[str]) -> str:
-    name = getattr(parameter, "name", parameter)
-    if not isinstance(name, str) or not _NAME.fullmatch(name) or name in taken or _COORDINATE.fullmatch(name):
-        raise InputError(f"{parameter!r} cannot be a parameter: names are words other than m0, m1, ..., and t")
-    return name
 
 
 def _natural(name: str) -> list[Any]:
@@ -429,18 +419,10 @@ def invariant_form(representation: Representation) -> Matrix:
     identity = field.identity(n)
     if n > MAX_SIZE or all((a + a.T).is_zero() for a in representation.matrices):
         return identity
-    units = [
-        field.from_entries([field.one if {k // n, k % n} == {i, j} else field.zero for k in range(n * n)], n, n)
-        for i in range(n)
-        for j in range(i, n)
-    ]
-    rows = [
-        field.stack_columns([(a.T @ b + b @ a).reshape(1, n * n) for a in representation.matrices], 1) for b in units
-    ]
-    kept = field.stack_rows(rows, n * n * len(representation.matrices)).left_null_space()
-    if kept.nrows == 0:
+    forms = representation.invariant_forms().symmetric
+    if not forms:
         return identity
-    flat = kept @ field.stack_rows([b.reshape(1, n * n) for b in units], n * n)
+    flat = field.stack_rows([b.reshape(1, n * n) for b in forms], n * n)
     weights = (flat @ flat.T).solve(flat @ identity.reshape(n * n, 1))
     form = (weights.T @ flat).reshape(n, n)
     return form if form.is_positive_definite() else identity

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import liehom as lh
-from liehom.flow.action import quadrics
-from liehom.flow.action.quadrics import tight_frame
+from liehom.flow.action import space
+from liehom.flow.action.space import tight_frame
 
 
 def two_spheres() -> lh.Representation:
@@ -54,7 +54,7 @@ def test_blocks_of_points_give_the_frame_of_all_of_them(monkeypatch: pytest.Monk
     action = lh.Action(lh.defining(lh.so(4)))
     points = np.random.default_rng(1).normal(size=(23, 4))
     whole: Any = tight_frame(action, points, 3)
-    monkeypatch.setattr(quadrics, "POINTS_AT_ONCE", 5)
+    monkeypatch.setattr(space, "POINTS_AT_ONCE", 5)
     parts: Any = tight_frame(action, points, 3)
     assert whole.isotropy == parts.isotropy == 0.5 and whole.symmetric == parts.symmetric
     np.testing.assert_array_equal(whole.trace, parts.trace)

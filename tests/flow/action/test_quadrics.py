@@ -7,7 +7,7 @@ import pytest
 
 import liehom as lh
 from liehom.flow.action.field import check_point
-from liehom.flow.action.quadrics import Quadrics, quadric_orbits
+from liehom.flow.action.invariants import Quadrics, quadric_orbits
 from liehom.flow.tracing.array import Traced
 from liehom.flow.tracing.graph import Tape
 

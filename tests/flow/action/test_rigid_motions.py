@@ -8,24 +8,32 @@ from scipy.linalg import expm, logm
 from scipy.spatial.transform import Rotation
 
 from liehom.base.errors import ShapeError
-from liehom.flow.action.motions import (
-    SE3,
-    SO3,
-    matrix_to_quaternion,
-    quaternion_log,
-    quaternion_to_matrix,
-    se3_bracket,
-    se3_dexp,
-    se3_dexp_inverse,
-    se3_exp,
-    se3_log,
-    so3_dexp,
-    so3_dexp_inverse,
-    so3_exp,
-    so3_log,
-)
+from liehom.flow.action.motions import SE3, SO3, matrix_to_quaternion, quaternion_log, quaternion_to_matrix
+
+so3_dexp, so3_dexp_inverse, se3_dexp, se3_dexp_inverse = SO3.dexp, SO3.dexp_inverse, SE3.dexp, SE3.dexp_inverse
 
 LENGTHS = [0.0, 1e-300, 1e-12, 1e-8, 1e-5, 0.03, 0.5, 0.99999, 1.00001, 2.0, 3.0, np.pi - 1e-6, np.pi - 1e-10]
+
+
+def so3_exp(x: Any) -> Any:
+    return SO3.exp(x).matrix
+
+
+def so3_log(rotation: Any) -> Any:
+    return SO3(rotation).log()
+
+
+def se3_exp(x: Any) -> Any:
+    return SE3.exp(x).matrix
+
+
+def se3_log(motion: Any) -> Any:
+    return SE3(motion).log()
+
+
+def se3_bracket(x: Any, y: Any) -> Any:
+    """[x, y] = (omega x eta, omega x u + v x eta) for x = (omega, v) and y = (eta, u)."""
+    return np.concatenate([np.cross(x[:3], y[:3]), np.cross(x[:3], y[3:]) + np.cross(x[3:], y[:3])])
 
 
 def hat(x: Any) -> Any:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import liehom as lh
-from liehom.flow.action.quadrics import tight_inverse
+from liehom.flow.action.space import tight_inverse
 from tests.flow.propagation import spaces
 
 TIGHT = ["S^2", "S^4", "S^6", "Sym(3) at (1,1,2)", "CP^2", "Gr(2,4)"]

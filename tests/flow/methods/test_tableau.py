@@ -95,7 +95,7 @@ def test_elementary_weights_are_the_sums_of_the_textbook(entries: list[Fraction]
     expected = conditions_written_out(a, b)
     trees = [tree for n in range(1, 5) for tree in rooted_trees(n)]
     assert [(t.density, elementary_weight(t, a, b)) for t in trees] == expected
-    by_order = list(itertools.islice(elementary_weights(a, b), 4))
+    by_order = list(itertools.islice(elementary_weights(np.array(a, dtype=object), np.array(b, dtype=object)), 4))
     assert [x for level in by_order for x in level] == [x for _, x in expected]
     floats = list(itertools.islice(elementary_weights(np.array(a, dtype=float), np.array(b, dtype=float)), 4))
     np.testing.assert_allclose(np.concatenate(floats), [float(x) for _, x in expected], atol=1e-12)
@@ -104,7 +104,7 @@ def test_elementary_weights_are_the_sums_of_the_textbook(entries: list[Fraction]
 @pytest.mark.parametrize("name", ["rk45", "gauss2", "lobatto3c"])
 def test_weights_of_whole_orders_are_those_of_single_trees(name: str) -> None:
     method = tableau(name)
-    for n, level in enumerate(itertools.islice(elementary_weights(method.a, method.b), 6), start=1):
+    for n, level in enumerate(itertools.islice(elementary_weights(np.array(method.a), np.array(method.b)), 6), start=1):
         assert list(level) == [elementary_weight(t, method.a, method.b) for t in rooted_trees(n)]
 
 
@@ -112,8 +112,6 @@ def test_trees_refuse() -> None:
     for order in (0, MAX_ORDER + 1, 2.0, True, "3"):
         with pytest.raises(InputError, match="integer from 1"):
             rooted_trees(order)  # type: ignore[arg-type]
-    with pytest.raises(ShapeError):
-        elementary_weights([[0]], [[1]])
 
 
 # -- the orders that are claimed -----------------------------------------------------------------------------
@@ -197,7 +195,9 @@ def test_symplectic_and_stiffly_accurate() -> None:
 @pytest.mark.parametrize("name", EXACT)
 def test_a_changed_coefficient_is_refused(name: str) -> None:
     method = tableau(name)
-    texts = method.to_strings()
+    shown = method.field.format
+    texts: dict[str, Any] = {"a": [[shown(x) for x in row] for row in method.a]}
+    texts |= {"b": [shown(x) for x in method.b], "c": [shown(x) for x in method.c]}
     for i, j in itertools.product(range(method.stages), repeat=2):
         wrong = copy.deepcopy(texts["a"])
         wrong[i][j] = f"{wrong[i][j]} + 1/1000"
@@ -273,8 +273,8 @@ def test_refused_names_and_nodes() -> None:
         collocation("twice", ["1/2", "2/4"], 2)
     with pytest.raises(InputError, match="order 5"):
         collocation("simpson", [0, "1/2", 1], 5)
-    with pytest.raises(InputError, match="exactly"):
-        collocation("floats", [0.0, 1.0], 2, field=RR)
+    with pytest.raises(ParseError, match="is not a value"):
+        collocation("floats", [0.0, 1.0], 2)
     with pytest.raises(InputError, match="no embedded method"):
         tableau("rk4").actual_order(embedded=True)
 
@@ -315,12 +315,6 @@ def test_copies(name: str) -> None:
         assert again == method and hash(again) == hash(method) and repr(again) == repr(method)
 
 
-@pytest.mark.parametrize("name", EXACT)
-def test_texts_make_the_same_tableau(name: str) -> None:
-    method = tableau(name)
-    assert Tableau(order=method.order, **method.to_strings(), name=name) == method
-
-
 def test_printing() -> None:
     assert repr(tableau("rk45")) == "<tableau 'rk45' of order 5, 7 stages, embedded order 4, over QQ>"
     assert repr(tableau("euler")) == "<tableau 'euler' of order 1, 1 stage, over QQ>"
@@ -353,9 +347,8 @@ def test_longdouble_is_not_rounded_through_float64() -> None:
     for name in ("rk45", "rkf45", "verner65"):
         method = tableau(name)
         a = method.to_numpy(np.longdouble)[0]
-        texts = method.to_strings()["a"]
         for i, j in itertools.product(range(method.stages), repeat=2):
-            value = Fraction(texts[i][j])
+            value = Fraction(str(method.a[i][j]))
             assert abs(exact_fraction(a[i, j]) - value) <= half_ulp * (1 + Fraction(1, 100)) * abs(value)
     with localcontext() as context:
         context.prec = 50

@@ -7,8 +7,9 @@ import pytest
 
 import liehom as lh
 from liehom.flow.convergence.reference import Reference
-from liehom.flow.spins import LandauLifshitz, SpinLattice, macrospin, switching_time
+from liehom.flow.spins import LandauLifshitz, SpinLattice
 from liehom.flow.steps.conserving import Conserving
+from tests.flow.spins.exact import macrospin, switching_time
 from tests.studies.support import on_sphere
 
 Z = np.array([0.0, 0.0, 1.0])
@@ -113,12 +114,6 @@ def test_the_macrospin_solves_the_equation(damping: float) -> None:
     assert np.abs(np.linalg.norm(exact, axis=-1) - 1).max() < 1e-14
 
 
-@pytest.mark.parametrize(("m0", "field"), [([1.0, 0.0], Z), (Z, [1.0, 0.0]), (1.0, Z), (Z, np.zeros((3, 2)))])
-def test_spins_and_fields_have_three_components(m0: Any, field: Any) -> None:
-    with pytest.raises(lh.ShapeError, match="for both"):
-        macrospin(m0, field, 1.0)
-
-
 def test_the_macrospin_at_its_limits() -> None:
     assert np.abs(macrospin([[0.0, 0.6, -0.8], -Z, Z], Z, 1e6, damping=0.5) - [Z, -Z, Z]).max() < 1e-15
     assert np.abs(macrospin(Z[[2, 0, 1]], Z, np.pi / 2, gyromagnetic=-1.0) - [0, -1, 0]).max() < 1e-15
@@ -155,15 +150,6 @@ def test_switching_takes_the_time_of_the_formula(field: float, anisotropy: float
     spin = LandauLifshitz(anisotropy=anisotropy, applied=field * Z, damping=0.1, gyromagnetic=1.5)
     sol = spin.integrate((0, time), [np.sqrt(1 - ends[0] ** 2), 0.0, ends[0]], rtol=1e-10, atol=1e-12)
     assert abs(sol.y[2, -1] - ends[1]) < 1e-8
-
-
-def test_switching_that_does_not_happen_is_refused() -> None:
-    with pytest.raises(lh.errors.InputError, match=r"side of -0\.5"):
-        switching_time(-0.9, 0.5, field=1.0, anisotropy=1.0, damping=0.1)
-    with pytest.raises(lh.errors.InputError, match="between -1 and 1"):
-        switching_time(-1.0, 0.5, field=1.0, damping=0.1)
-    with pytest.raises(lh.errors.InputError, match="no switching without damping"):
-        switching_time(-0.5, 0.5, field=1.0, damping=0.0)
 
 
 def test_resonance_in_a_rotating_field() -> None:

@@ -34,7 +34,6 @@ SIGMA_I = R - H
 SIGMA_IB = (E2 * R - E3) / 4
 SIGMA_IO = (3 * V2 + 3 * H**2 - 2 * E1 * H + E2) * SIGMA_I / 4
 SIGMA_SY4_IB = D * (3 * E1 * H**2 - 2 * E2 * H + E3 - 3 * H * K) / (24 * V2)
-NAMED = {"h": H, "R": R, "D": D, "q": D / V2, "v2": V2, "e1": E1, "e2": E2, "e3": E3}
 
 
 class PaperSy4(OneExponential):
@@ -129,20 +128,6 @@ def test_the_heun_step_needs_no_isotropy_at_order_three() -> None:
     for kind in "bo":
         result = body(kind, lh.Heun(), 3)
         assert result.residual_is_zero and result.zeta == {} and result.clock[3] != 0
-
-
-def test_named_functions() -> None:
-    h, r, d, e2, e3 = sympy.symbols("h R D e2 e3")
-    assert body("o", lh.Euler(), 2).in_terms_of(NAMED) == r - h
-    assert body("b", lh.Heun(), 4).in_terms_of(NAMED) == e2 * r / 4 - e3 / 4
-    assert sympy.expand(body("o", PaperSy4(), 5).in_terms_of(NAMED) + d * (r - h) / 8) == 0
-    io = body("o", lh.Heun(), 4)
-    result = io.in_terms_of(NAMED)
-    assert io.equal(result.subs({sympy.Symbol(k): v for k, v in NAMED.items()}), SIGMA_IO)
-    with pytest.raises(InputError, match="not a polynomial of degree 3"):
-        io.in_terms_of({"h": H})
-    with pytest.raises(InputError, match="there is no clock with index 7"):
-        io.in_terms_of(NAMED, "clock 7")
 
 
 def test_axisymmetric_bodies_need_no_correction_of_order_four() -> None:
@@ -317,7 +302,7 @@ def test_the_users_own_symbols_and_isotropy_are_used() -> None:
     m = sympy.symbols("m0:3", real=True)
     spring = sympy.Symbol("k", positive=True)
     minus = [-x for x in m]
-    formula = closed_form(spin(), [0, m[2] * spring, 1], lh.Euler(), 2, isotropy=minus, parameters=[spring])
+    formula = closed_form(spin(), [0, m[2] * spring, 1], lh.Euler(), 2, isotropy=minus)
     assert spring in formula.factor[1].free_symbols and formula.isotropy == tuple(minus)
     other = closed_form(spin(), ["0", "k*m2", "1"], lh.Euler(), 2)
     assert other.equal(str(formula.factor[1]), -other.factor[1])
@@ -326,7 +311,6 @@ def test_the_users_own_symbols_and_isotropy_are_used() -> None:
 
 @pytest.mark.parametrize(("psi", "options", "error", "match"), [
     (["m3", "0", "1"], {}, InputError, r"psi\[0\] has the unknown symbol m3"),
-    (["a*m1", "b", "1"], {"parameters": ["a"]}, InputError, r"psi\[1\] has the unknown symbol b"),
     (["m1", "1"], {}, ShapeError, "2 components, expected 3"), (["0.5*m0", "0", "1"], {}, ParseError, r"psi\[0\]"),
     ([0.5, 0, 1], {}, FieldError, r"psi\[0\] is 0.5.*write a fraction"),
     ([sympy.Float(0.5) * M[0], 0, 1], {}, FieldError, "a float"),
@@ -340,7 +324,6 @@ def test_the_users_own_symbols_and_isotropy_are_used() -> None:
     (["m0", "0", "1"], {"isotropy": ["m0", "m1"]}, ShapeError, "2 coefficients"),
     (["m0", "0", "1"], {"isotropy": ["m0", "m1", "1"]}, InputError, "does not generate g_m"),
     (["m0", "0", "1"], {"isotropy": ["0", "0", "0"]}, InputError, "does not generate g_m"),
-    (["m0", "0", "1"], {"parameters": ["m7"]}, InputError, "cannot be a parameter"),
 ])  # fmt: skip
 def test_wrong_input(psi: Any, options: dict[str, Any], error: type[Exception], match: str) -> None:
     with pytest.raises(error, match=match):

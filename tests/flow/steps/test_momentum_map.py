@@ -123,7 +123,7 @@ def test_momentum_that_is_not_conserved_is_refused() -> None:
 
 def test_compiled_conservation_of_a_component() -> None:
     g, energy, _ = pair_of_spins()
-    J = lh.steps.MomentumMap(lh.coadjoint(g)).component([0, 0, 1, 0, 0, 1])
+    J = lh.steps.MomentumMap(lh.coadjoint(g), g.subalgebra([[0, 0, 1, 0, 0, 1]]))
     field = lh.hamiltonian_field(g, energy)
     sol = lh.integrate(
         field, (0, 10), np.arange(1.0, 7.0) / 5, step=lh.Conserving(lh.Heun(), J), dt=0.05, engine="llvm"

@@ -9,7 +9,7 @@ import pytest
 import liehom as lh
 from liehom.base.errors import InputError
 from liehom.flow.action.field import check_point
-from liehom.flow.steps.expansion import flow_series
+from liehom.flow.steps.expansion import Clock, flow_series
 from liehom.flow.steps.order_conditions import chi
 from liehom.flow.steps.range_solver import RangeSolver
 from liehom.flow.steps.step import OneExponential, Step
@@ -48,7 +48,7 @@ def test_the_tower_is_the_single_correction_repeated(name: str, exponential: str
     raised = lh.steps.correction(field, lh.Euler(), m, 5, exponential=exponential)
     step: Step = lh.Euler()
     flow = flow_series(field, m, 5)
-    clock = lh.steps.Clock(flow, 5, ())
+    clock = Clock(flow, 5, ())
     for n in range(2, 6):
         # Theorem 5 for the reparametrised flow: one linear system
         z = step_of(field, step, m, n, exponential)
