@@ -105,32 +105,35 @@ class LlvmEngine:
 
     def again(self, t_span: object, y0: object, options: Mapping[str, Any], args: Pytree = None) -> Solution | None:
         """The solution of a call of a form that there was before; None if it needs a closer look."""
-        if not self._plans or self._watch is None:
+        if not self._plans:
             return None
         try:
-            first, last = t_span  # type: ignore[misc]
-            if type(first) not in KINDS or type(last) not in KINDS:  # type: ignore[has-type]
-                return None
-            points, times = floats("the start", y0), options.get("t_eval")
-            if points is None or (times is not None and (times := floats("t_eval", times)) is None):
-                return None
-            others, events = options, options.get("events")
-            if times is not None or events is not None:
-                others = {name: x for name, x in options.items() if name not in ("t_eval", "events")}
+            begin, end = t_span  # type: ignore[misc]
+            if not type(begin) is type(end) is float:  # type: ignore[has-type]
+                if type(begin) not in KINDS or type(end) not in KINDS:  # type: ignore[has-type]
+                    return None
+                begin, end = float(begin), float(end)  # type: ignore[has-type]
+            points, times, events = floats("the start", y0), None, None
+            if "t_eval" in options or "events" in options:
+                times, events = options.get("t_eval"), options.get("events")
+                options = {name: x for name, x in options.items() if name not in ("t_eval", "events")}
+                if times is not None and (times := floats("t_eval", times)) is None:
+                    return None
             try:
-                numbers = numbers_of(**others)
+                numbers = numbers_of(**options)
             except TypeError:  # sizes in an array are not hashable
-                numbers = numbers_of.__wrapped__(**others)
+                numbers = numbers_of.__wrapped__(**options)
+            if points is None or numbers is None:
+                return None
             found = None if args is None else leaves(args)
             shape, known, plan = self._latest
-            if found is not None or others is not options or numbers is not known or points.shape != shape:
-                shape = points.shape
-                plan = None if numbers is None else self._plans.get(form_of(shape, numbers, times, events, found))
-                if found is None and others is options:
-                    self._latest = shape, numbers, plan
-            if numbers is None or plan is None or self._watch.changed():
+            if not (numbers is known and args is times is events is None and points.shape == shape):
+                plan = self._plans.get(form_of(points.shape, numbers, times, events, found))
+                if args is times is events is None:
+                    self._latest = points.shape, numbers, plan
+            if plan is None or self._watch.changed():  # type: ignore[union-attr]
                 return None
-            return plan(numbers, points, float(first), float(last), times, args, found)  # type: ignore[has-type]
+            return plan(numbers, points, begin, end, times, args, found)
         except (TypeError, ValueError, OverflowError):  # not numbers
             return None
 
