@@ -306,18 +306,18 @@ class Watch(Parts):
     def __init__(self, field: GeneratorField, start: Values, t: Real | np.floating[Any]) -> None:
         source: Any = source_of(field)
         super().__init__([source])
-        self._read: Callable[[], bytes] = bytes  # returns the value
+        self._read: Read = bytes  # returns the value
         if callable(source) and not is_traced(start) and not is_traced(t):
             m = np.array(start if start.size <= LARGEST else start.reshape(-1, start.shape[-1])[0])
             m.flags.writeable = False
             inner = field._components
             function = (inner.components if isinstance(inner, LeastNorm) else inner)._function
             time = np.full(m.shape[:-1], t)[()]
-            self._read = lambda: np.asarray(function(m, time)).tobytes()
+            self._read = partial(function, m, time)
         self._known: bytes | None = None
         with suppress(Exception):  # of the user's function
-            known = self._read()
-            self._known = known if self._read() == known else None  # a value that varies says nothing
+            first, second = (np.asarray(self._read()).tobytes() for _ in range(2))
+            self._known = first if first == second else None  # a value that varies says nothing
         before = len(self._parts) + len(self._contents)
         # the others are the state of psi
         self._parts = [part for part in self._parts if not _is_another(*part)]
@@ -330,7 +330,7 @@ class Watch(Parts):
         if super().changed():
             return True
         try:
-            return self._known is not None and self._read() != self._known
+            return self._known is not None and np.asarray(self._read()).tobytes() != self._known
         except Exception:  # noqa: BLE001 - of the user's function
             return False
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import threading
 from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache, partial
@@ -233,16 +232,14 @@ class Plan:
         names = () if problem.args is None else arg_values(problem.args, len(self.shape))
         self.names = [(name, self.slot.get(name)) for name in names]
         self.keeps = options.t_eval is None or options.dense_output or events is not None
-        self.memory = Memory(kernel, self.lanes, self.constants) if self.lanes <= SMALL else None
+        memory = Memory(kernel, self.lanes, self.constants) if self.lanes <= SMALL else None
+        self.free = [memory]  # the memory, unless a call is using it
         self.is_alone = not self.shape and kernel.width == 1 and not kernel.lane_constants
-        if self.memory is not None:
-            cells, begin = self.memory.cells, len(kernel.names)
-            self.first, self.start, self.stops = (
-                cells[: self.n],
-                cells[begin : begin + self.n],
-                self.memory.views["stops"],
-            )
-        self.is_judged, self.rows, self.lock = options.dt is not None, ROOM, threading.Lock()
+        if memory is not None:  # of one trajectory: point, initial point, the path as it is and as columns
+            cells, begin = memory.cells, len(kernel.names)
+            self.first, self.start, self.stops = cells[: self.n], cells[begin : begin + self.n], memory.views["stops"]
+            self.path: Any = None
+        self.is_judged, self.rows = options.dt is not None, ROOM
         self.most = max(1, OPERATIONS_PER_CALL // work)  # steps of a call
         # rows of a path up to which there is one piece
         row = max(8 * (self.n + 2) / PATH_BYTES_PER_CALL, work / OPERATIONS_PER_CALL, 1 / LANE_STEPS_FOR_THREADS)
@@ -258,9 +255,9 @@ class Plan:
         args: Pytree, found: Sequence[Leaf] | None,
     ) -> Solution | None:  # fmt: skip
         """The solution, or None if the call needs a closer look."""
-        way, size, last, total = end - begin, numbers.dt, max(abs(begin), abs(end)), 0
-        rest, direction = 8 * EPS * last, 1.0 if way > 0 else -1.0
-        if not 0.0 < abs(way) < inf or (numbers.shape and numbers.shape != self.shape):
+        length, size, rest, total = abs(end - begin), numbers.dt, 8 * EPS * max(begin, end, -begin, -end), 0
+        direction = 1.0 if end > begin else -1.0
+        if not 0.0 < length < inf or (numbers.shape and numbers.shape != self.shape):
             return None
         if size is None:
             size = numbers.first_step or numbers.min_step or inf
@@ -268,22 +265,25 @@ class Plan:
             if rest > (size if type(size) is float else np.min(size)):
                 return None
             if self.lockstep:
-                total = max(ceil(abs(way) / size - (SLACK + rest / size)), 1)  # type: ignore[operator]
+                total = max(ceil(length / size - (SLACK + rest / size)), 1)
                 if total >= numbers.max_steps:
                     return None
             size = direction * size
         if not (times is None or _are_in_order(times, begin, end)) or not (self.events is None or self.is_current):
             return None
-        if not self.lock.acquire(blocking=False):
+        try:
+            memory = self.free.pop()
+        except IndexError:  # another thread makes a call
             return None
         try:
             values = self._take(numbers, begin, end, rest, direction, found) if self.own or found else NO_VALUES
             task = numbers, points, times, begin, end, size, direction, values, total
-            made = self._alone(task) if self.is_alone and (total or self.rows) <= self.short else None
-            made = self._in_pieces(task) if made is None else made
+            is_short = (total or self.keeps * self.rows) <= self.short
+            made = self._alone(task, memory) if memory and self.is_alone and is_short else None
+            made = self._in_pieces(task, memory if is_short else None) if made is None else made
             return None if made is None else self._solution(task, made, args)
         finally:
-            self.lock.release()
+            self.free.append(memory)
 
     def _solution(self, task: Task, made: Made, args: Pytree) -> Solution | None:
         """The solution of what was made; None if an ordinary call should say more of it."""
@@ -306,11 +306,11 @@ class Plan:
             start = points.reshape(self.lanes, n).copy()
         return solution_of(times, y, END, partial(self._others, task, args, state, path, start, log))
 
-    def _alone(self, task: Task) -> Made | None:
+    def _alone(self, task: Task, memory: Memory) -> Made | None:
         """What is made of one trajectory, by few operations; None if its path has no room, or if it fails."""
         numbers, points, times, begin, end, size, _, _, total = task
-        memory: Any = self.memory
-        cells, integers, n, path, y = memory.cells, memory.integers, self.n, None, None
+        cells, integers, n = memory.cells, memory.integers, self.n
+        path: Any = None
         cells[:] = memory.fresh
         self.first[:] = self.start[:] = point = points.data
         if times is None:
@@ -324,8 +324,10 @@ class Plan:
         else:
             integers[END_STEP], cells[self.time], cells[self.size] = self.rows if self.keeps else self.most, begin, size
         if self.keeps:
-            path, row = memory.path(total or self.rows, n + 2), memory.views["path"]
-            row[:n], row[n] = point, begin
+            path = memory.path(total or self.rows, n + 2)
+            if path is not self.path:
+                self.path, self.columns, self.row = path, path[:, :, 0].T, memory.views["path"]
+            self.row[:n], self.row[n] = point, begin
         self.kernel.run(memory.address)
         left, most = cells[self.alive], total or int(cells[self.taken])
         if left <= 0 if total else left >= 0 or most >= numbers.max_steps:
@@ -336,39 +338,41 @@ class Plan:
         cells[self.taken] = most
         if path is not None:
             rows = total or integers[BEGIN]
-            path = path[: rows + 1, :, 0].T.copy()
+            path = self.columns[:, : rows + 1].copy()
             if rows > most:  # some rows are not steps
                 path[n + 1, 0] = 1.0
                 path = path[:, path[n + 1] != 0]
-        if times is not None:
-            y = memory.arrays["out"][: len(times)].transpose(2, 1, 0).copy()
+        y = None if times is None else memory.arrays["out"][: len(times)].transpose(2, 1, 0).copy()
         return most, memory.state.copy(), path, y
 
-    def _in_pieces(self, task: Task) -> Made | None:
+    def _in_pieces(self, task: Task, memory: Memory | None) -> Made | None:
         """What is made of the lanes in pieces, in threads if they are many; None if one of them fails."""
-        times, total, path = task[2], task[-1], None
+        times, total = task[2], task[-1]
+        path: Any = None
         rows = total if self.lockstep or not self.keeps else self.rows
         y = None if times is None else np.empty((self.lanes, self.n, len(times)))
-        if self.memory is not None and rows <= self.short:
-            pieces = [self._made(task, slice(0, self.lanes), y, self.memory)]
+        if memory is not None:
+            pieces = [self._made(task, slice(0, self.lanes), y, memory)]
         else:
             chunk = self._chunk(rows)
             cuts = pairwise([*range(0, self.lanes, chunk), self.lanes] if chunk else [])
             pieces = in_threads(lambda lanes: self._made(task, lanes, y), [slice(a, b) for a, b in cuts])
-        if not pieces or None in pieces:
+        made = [piece for piece in pieces if piece is not None]
+        if not made or len(made) < len(pieces):
             return None
-        state = np.concatenate([x[0] for x in pieces], axis=1)
+        state = np.concatenate([x[0] for x in made], axis=1)
         if self.keeps:
-            path = _joined([x[1] for x in pieces]).transpose(1, 2, 0)
+            path = _joined([x[1] for x in made]).transpose(1, 2, 0)
             path = path if self.shape else path[:, 0]
         return state[self.kept.index("count")].max(), state, path, y
 
-    def _made(self, task: Task, lanes: slice, y: Array | None, memory: Memory | None = None) -> Any:
+    def _made(
+        self, task: Task, lanes: slice, y: Array | None, kept: Memory | None = None
+    ) -> tuple[Array, Array] | None:
         """Numbers of states and the path of some lanes, whose points at output times go to y; None if one fails."""
         numbers, points, times, begin, end, size, _, values, total = task
         points = points.reshape(self.lanes, self.n)[lanes]
-        if memory is None:  # pieces run in threads
-            memory = Memory(self.kernel, len(points), self.constants)
+        memory = Memory(self.kernel, len(points), self.constants) if kept is None else kept  # pieces run in threads
         count, n, state, integers = len(points), self.n, memory.state, memory.integers
         for row, number in zip(memory.rows, self.kernel.lane_constants, strict=False):
             row[:count] = values[number.name][lanes] if isinstance(number, LaneConstant) else number(points)
@@ -390,7 +394,7 @@ class Plan:
             self.kernel.run(memory.address)
             if state[self.alive, :count].min() <= 0:
                 return None
-            state[self.taken], path = total, path.copy() if memory is self.memory else path
+            state[self.taken], path = total, path if kept is None else path.copy()
         else:
             path = self._to_the_end(memory, count, begin, numbers.max_steps)
         if path is None or (state[self.trouble, :count] > 0).any():
@@ -427,16 +431,16 @@ class Plan:
         dt, rtol, atol, most, least, _, _, looks, *_ = numbers
         tiny, latest = rest if dt is not None or rest > least else least, abs(begin) + abs(end) + 1.0  # see bounds_of
         gap = (gap_of(looks, end - begin, self.problem.field) if "gap" in self.slot else None) or 0.0
-        known, slots = (rest, end, direction, tiny, latest, rtol, atol, most, gap), self.slots
+        known: Any = rest, end, direction, tiny, latest, rtol, atol, most, gap
         for place, i in self.own:
-            slots[place] = known[i]
+            self.slots[place] = known[i]
         if found is None:
             return NO_VALUES
         values: dict[str, Any] = {}
         for (name, slot), number in zip(self.names, numbers_in(found, len(self.shape)), strict=True):
             values[name] = number
             if slot is not None:
-                slots[slot] = number
+                self.slots[slot] = number
         return values
 
     def _to_the_end(self, memory: Memory, count: int, begin: float, most: float) -> Array | None:
@@ -468,7 +472,7 @@ class Plan:
         return np.where(moved[:, None], path, np.nan)
 
     def _others(
-        self, task: Task, args: Pytree, state: Array, path: Any, start: Array | None, log: EventLog | None
+        self, task: Task, args: Pytree, state: Array, path: Array, start: Array | None, log: EventLog | None
     ) -> dict[str, object]:
         """The other entries of a solution, which are made when one of them is asked for."""
         p, shape, graph, (given, _, times, *span, _, direction, _, _) = (
