@@ -8,7 +8,7 @@ before that step, which the automaton then makes or diagnoses.
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Mapping
-from typing import Any, final
+from typing import Any, TypeAlias, final
 
 import numpy as np
 
@@ -62,6 +62,10 @@ COPIES_WITH_EVENTS = 8  # arrays of the size of the path, about, while events ar
 MIN_STEPS_WITH_ENDS = 64  # with terminal events, steps in the first call; further calls double their number
 MAX_PLANS = 64  # number of plans that are kept
 
+Latest: TypeAlias = tuple[tuple[int, ...], Numbers | None, bool, Plan | None]
+"""Of the latest call without args and events: shape, numbers, whether it had no output times, and its plan."""
+NEVER: Latest = (), None, True, None
+
 
 @final
 class LlvmEngine:
@@ -72,8 +76,7 @@ class LlvmEngine:
     def __init__(self, store: CodeStore | None = None, watch: Watch | None = None) -> None:
         self._store = CodeStore() if store is None else store
         self._plans: dict[Hashable, Plan] = {}
-        # of a call with numbers alone: shape, numbers, plan
-        self._latest: tuple[tuple[int, ...], Numbers | None, Plan | None] = (), None, None
+        self._latest: Latest = NEVER
         self._lattice: LatticeStep | None = None
         self._watch = watch  # of the psi from which the store was made
 
@@ -83,7 +86,7 @@ class LlvmEngine:
     def solve(self, problem: Problem) -> Solution:
         """The solution of a problem."""
         if self._watch is None or self._watch.changed():
-            self._store, self._plans, self._latest, self._lattice = CodeStore(), {}, ((), None, None), None
+            self._store, self._plans, self._latest, self._lattice = CodeStore(), {}, NEVER, None
             self._watch = Watch(problem.bound, problem.start, problem.span[0])
         if problem.field.sites:
             step, self._lattice = self._lattice, None  # its planes serve one call at a time
@@ -115,8 +118,8 @@ class LlvmEngine:
                 begin, end = float(begin), float(end)  # type: ignore[has-type]
             points, times, events = floats("the start", y0), None, None
             if "t_eval" in options or "events" in options:
-                times, events = options.get("t_eval"), options.get("events")
-                options = {name: x for name, x in options.items() if name not in ("t_eval", "events")}
+                options = dict(options)
+                times, events = options.pop("t_eval", None), options.pop("events", None)
                 if times is not None and (times := floats("t_eval", times)) is None:
                     return None
             try:
@@ -126,11 +129,11 @@ class LlvmEngine:
             if points is None or numbers is None:
                 return None
             found = None if args is None else leaves(args)
-            shape, known, plan = self._latest
-            if not (numbers is known and args is times is events is None and points.shape == shape):
+            (shape, known, is_free, plan), is_plain = self._latest, args is events is None
+            if not (is_plain and numbers is known and (times is None) is is_free and points.shape == shape):
                 plan = self._plans.get(form_of(points.shape, numbers, times, events, found))
-                if args is times is events is None:
-                    self._latest = points.shape, numbers, plan
+                if is_plain:
+                    self._latest = points.shape, numbers, times is None, plan
             if plan is None or self._watch.changed():  # type: ignore[union-attr]
                 return None
             return plan(numbers, points, begin, end, times, args, found)
@@ -152,7 +155,7 @@ class LlvmEngine:
         events = None if o.events is None else planned_events(problem, run.step, dimension, np.asarray(solution.y))
         if events is None and o.events is not None:
             return
-        self._latest = (), None, None
+        self._latest = NEVER
         if len(self._plans) >= MAX_PLANS:
             self._plans.pop(next(iter(self._plans)))
         kernel = self._store.kernel(key, graph, int(np.prod(start.shape[:-1], dtype=int)))

@@ -111,14 +111,16 @@ def floats(what: str, given: object) -> Array | None:
     return value.astype(np.float64) if value.dtype.kind in "iu" else None
 
 
-def _are_in_order(times: Array, begin: float, end: float) -> bool:
-    """Whether times are increasing, or decreasing, from the begin of a span to its end."""
-    if not len(times):
-        return False
+def _stops_of(times: Array, begin: float, end: float) -> tuple[int, int] | None:
+    """The slice of output times after the begin of a span and before its end; None if they are not in order."""
+    if times.ndim != 1 or not len(times):
+        return None
     first, last = float(times[0]), float(times[-1])
     if not (begin <= first <= last <= end if end > begin else begin >= first >= last >= end):
-        return False
-    return len(times) == 1 or bool((np.diff(times) * (1 if end > begin else -1) > 0).all())
+        return None
+    if len(times) > 1 and not (np.diff(times) * (1 if end > begin else -1) > 0).all():
+        return None
+    return int(first == begin), len(times) - int(last == end)
 
 
 def form_of(
@@ -197,13 +199,16 @@ TROUBLE = frozenset(["unkept", "failed", "near", "short", "conservation_short", 
 """Numbers of steps that are 0, or -inf, if the steps are as they should be."""
 
 
-Task: TypeAlias = tuple[Numbers, Array, Array | None, float, float, Any, float, Mapping[str, Any], int]
+Stops: TypeAlias = tuple[Array, int, int] | None
+"""Output times, and the slice of those within the span."""
+
+Task: TypeAlias = tuple[Numbers, Array, Stops, float, float, Any, float, Mapping[str, Any], int]
 """Numbers of a call, points (..., N), output times, begin and end of the span, sizes with their sign, the direction,
 numbers of args by name, and the number of steps in lockstep, 0 for steps of their own sizes."""
 
 Made: TypeAlias = tuple[float, Array, Any, Any]
 """The largest number of steps, numbers of states (k, L), the path (N + 2, L, j + 1) of points, times and signed sizes,
-for one trajectory (N + 2, j + 1), and points (L, N, k) at output times."""
+and points (L, N, k) at output times, for one trajectory (N + 2, j + 1) and (N, k)."""
 
 
 @final
@@ -269,7 +274,12 @@ class Plan:
                 if total >= numbers.max_steps:
                     return None
             size = direction * size
-        if not (times is None or _are_in_order(times, begin, end)) or not (self.events is None or self.is_current):
+        stops: Stops = None
+        if times is not None:
+            if (inner := _stops_of(times, begin, end)) is None:
+                return None
+            stops = times, *inner
+        if not (self.events is None or self.is_current):
             return None
         try:
             memory = self.free.pop()
@@ -277,7 +287,7 @@ class Plan:
             return None
         try:
             values = self._take(numbers, begin, end, rest, direction, found) if self.own or found else NO_VALUES
-            task = numbers, points, times, begin, end, size, direction, values, total
+            task = numbers, points, stops, begin, end, size, direction, values, total
             is_short = (total or self.keeps * self.rows) <= self.short
             made = self._alone(task, memory) if memory and self.is_alone and is_short else None
             made = self._in_pieces(task, memory if is_short else None) if made is None else made
@@ -287,7 +297,7 @@ class Plan:
 
     def _solution(self, task: Task, made: Made, args: Pytree) -> Solution | None:
         """The solution of what was made; None if an ordinary call should say more of it."""
-        _, points, times, begin, end, _, direction, values, _ = task
+        _, points, stops, begin, end, _, direction, values, _ = task
         (most, state, path, y), n, shape, log, start = made, self.n, self.shape, None, None
         if not self.is_judged and most >= MIN_STEPS:
             self.is_judged = True  # an ordinary call says whether the field is stiff
@@ -296,8 +306,8 @@ class Plan:
             steps = path.reshape(n + 2, self.lanes, -1).transpose(2, 0, 1)
             if (log := self.events(steps, {**values, "direction": direction}, (begin, end))) is None:
                 return None
-        if times is not None:
-            times, y = times.copy(), y.reshape(*shape, *y.shape[1:])
+        if stops is not None:
+            times, y = stops[0].copy(), y.reshape(*shape, *y.shape[1:]) if shape else y
         elif shape:
             times, y = path[n].reshape(*shape, -1), path[:n].swapaxes(0, 1).reshape(*shape, n, -1)
         else:
@@ -308,15 +318,15 @@ class Plan:
 
     def _alone(self, task: Task, memory: Memory) -> Made | None:
         """What is made of one trajectory, by few operations; None if its path has no room, or if it fails."""
-        numbers, points, times, begin, end, size, _, _, total = task
+        numbers, points, stops, begin, end, size, _, _, total = task
         cells, integers, n = memory.cells, memory.integers, self.n
         path: Any = None
         cells[:] = memory.fresh
         self.first[:] = self.start[:] = point = points.data
-        if times is None:
+        if stops is None:
             self.stops[0] = self.stops[1] = end
         else:
-            self._put_times(memory, times, begin, end)
+            self._put(stops, memory, end)
         integers[BEGIN], memory.floats[ORIGIN] = 0, begin
         if total:
             integers[END_STEP] = integers[TOTAL] = total
@@ -342,15 +352,15 @@ class Plan:
             if rows > most:  # some rows are not steps
                 path[n + 1, 0] = 1.0
                 path = path[:, path[n + 1] != 0]
-        y = None if times is None else memory.arrays["out"][: len(times)].transpose(2, 1, 0).copy()
+        y = None if stops is None else memory.arrays["out"][: len(stops[0]), :, 0].T.copy()
         return most, memory.state.copy(), path, y
 
     def _in_pieces(self, task: Task, memory: Memory | None) -> Made | None:
         """What is made of the lanes in pieces, in threads if they are many; None if one of them fails."""
-        times, total = task[2], task[-1]
+        stops, total = task[2], task[-1]
         path: Any = None
         rows = total if self.lockstep or not self.keeps else self.rows
-        y = None if times is None else np.empty((self.lanes, self.n, len(times)))
+        y = None if stops is None else np.empty((self.lanes, self.n, len(stops[0])))
         if memory is not None:
             pieces = [self._made(task, slice(0, self.lanes), y, memory)]
         else:
@@ -364,13 +374,13 @@ class Plan:
         if self.keeps:
             path = _joined([x[1] for x in made]).transpose(1, 2, 0)
             path = path if self.shape else path[:, 0]
-        return state[self.kept.index("count")].max(), state, path, y
+        return state[self.kept.index("count")].max(), state, path, y if self.shape or y is None else y[0]
 
     def _made(
         self, task: Task, lanes: slice, y: Array | None, kept: Memory | None = None
     ) -> tuple[Array, Array] | None:
         """Numbers of states and the path of some lanes, whose points at output times go to y; None if one fails."""
-        numbers, points, times, begin, end, size, _, values, total = task
+        numbers, points, stops, begin, end, size, _, values, total = task
         points = points.reshape(self.lanes, self.n)[lanes]
         memory = Memory(self.kernel, len(points), self.constants) if kept is None else kept  # pieces run in threads
         count, n, state, integers = len(points), self.n, memory.state, memory.integers
@@ -383,8 +393,8 @@ class Plan:
             state[self.size, :count] = size if isinstance(size, float) else size.reshape(-1)[lanes]
         memory.block[:, :, count:] = memory.block[:, :, :1]
         memory.arrays["stops"][:2], memory.floats[ORIGIN] = end, begin
-        if times is not None:
-            self._put_times(memory, times, begin, end)
+        if stops is not None:
+            self._put(stops, memory, end)
         if total:
             path: Any = memory.path(total, n + 2)[: total + 1, :, :count] if self.keeps else state
             if self.keeps:
@@ -403,16 +413,19 @@ class Plan:
             y[lanes] = memory.arrays["out"][: y.shape[2], :, :count].transpose(2, 1, 0)
         return state[self.kept_rows, :count], path
 
-    def _put_times(self, memory: Memory, times: Array, begin: float, end: float) -> None:
+    def _put(self, stops: tuple[Array, int, int], memory: Memory, end: float) -> None:
         """Give a kernel output times and the end, and take the points at the begin."""
-        first, last = int(times[0] == begin), len(times) - int(times[-1] == end)
-        memory.room("out", last + 2, *memory.start.shape)[:first] = memory.start
-        memory.room("stops", last + 2)[:last] = times[:last]
-        memory.arrays["stops"][last : last + 2] = end
+        times, first, last = stops
+        out, _ = memory.room("out", last + 2, *memory.start.shape), memory.room("stops", last + 2)
+        places = memory.views["stops"]
+        places[:last] = times.data[:last]
+        places[last] = places[last + 1] = end
         memory.integers[LAST_STOP], memory.integers[FIRST_STOP] = last, first
-        for name in ("stop", "kept"):
-            if name in self.place:
-                memory.state[self.place[name]] = first
+        if first:
+            out[0] = memory.start
+            for name in ("stop", "kept"):
+                if name in self.place:
+                    memory.state[self.place[name]] = 1
 
     def _chunk(self, rows: int) -> int:
         """Number of lanes that are run at once, whole blocks; 0 if even one block is too long for one call."""
@@ -475,7 +488,7 @@ class Plan:
         self, task: Task, args: Pytree, state: Array, path: Array, start: Array | None, log: EventLog | None
     ) -> dict[str, object]:
         """The other entries of a solution, which are made when one of them is asked for."""
-        p, shape, graph, (given, _, times, *span, _, direction, _, _) = (
+        p, shape, graph, (given, _, stops, *span, _, direction, _, _) = (
             self.problem,
             self.shape,
             self.kernel.graph,
@@ -508,7 +521,7 @@ class Plan:
             "nfev": self.prepared + int(calls.max()), "message": MESSAGES[END],
             "n_steps": steps.reshape(shape) if shape else int(steps[0]), "report": report,
             "statuses": np.full(shape, END) if shape else END, "njev": 0, "nlu": 0,
-            "_steps": dense if times is None or given.dense else None,
+            "_steps": dense if stops is None or given.dense else None,
         }  # fmt: skip
 
 
