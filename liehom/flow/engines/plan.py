@@ -187,7 +187,7 @@ def ranked(count: int) -> IntegerArray:
 # made again in the ordinary way.
 
 CHUNK = 16_384  # number of lanes, at most, that are copied in, run, and copied out at once
-SMALL = 64  # number of lanes up to which memory is kept from call to call
+SMALL = 1024  # number of lanes up to which memory is kept from call to call
 ROOM = 64  # rows of the path, at first, of steps whose number is not known
 LAST_STOP, FIRST_STOP, ORIGIN, BEGIN, END_STEP, TOTAL, STEP_SIZE = (
     PLACES[name] for name in ("last_stop", "first_stop", "origin", "begin", "end", "total", "step_size")
@@ -225,7 +225,7 @@ class Plan:
         self.alive, self.taken, self.time, self.size = (self.place.get(x, 0) for x in ("alive", "count", "t", "h"))
         recorded = {f"e{i}": name for i, name in enumerate([*graph.largest, *graph.summed])}
         self.trouble = [self.place[e] for e, name in recorded.items() if name in TROUBLE]
-        self.kept = [x for x in kernel.names if self.lanes <= SMALL or x in recorded or x in ("count", "tries")]
+        self.kept = [x for x in kernel.names if self.lanes == 1 or x in recorded or x in ("count", "tries")]
         self.kept_rows = [self.place[name] for name in self.kept]
         self.ranked = ranked(self.lanes) if step.uses_isotropy else None
         self.constants: Array = np.zeros(max(1, len(kernel.run_constants)))
@@ -358,7 +358,6 @@ class Plan:
     def _in_pieces(self, task: Task, memory: Memory | None) -> Made | None:
         """What is made of the lanes in pieces, in threads if they are many; None if one of them fails."""
         stops, total = task[2], task[-1]
-        path: Any = None
         rows = total if self.lockstep or not self.keeps else self.rows
         y = None if stops is None else np.empty((self.lanes, self.n, len(stops[0])))
         if memory is not None:
@@ -370,11 +369,14 @@ class Plan:
         made = [piece for piece in pieces if piece is not None]
         if not made or len(made) < len(pieces):
             return None
-        state = np.concatenate([x[0] for x in made], axis=1)
-        if self.keeps:
-            path = _joined([x[1] for x in made]).transpose(1, 2, 0)
-            path = path if self.shape else path[:, 0]
-        return state[self.kept.index("count")].max(), state, path, y if self.shape or y is None else y[0]
+        state = made[0][0] if len(made) == 1 else np.concatenate([x[0] for x in made], axis=1)
+        most = state[self.kept.index("count")].max()
+        if most >= task[0].max_steps:
+            return None
+        path: Any = _joined([x[1] for x in made]).transpose(1, 2, 0) if self.keeps else None
+        if self.shape:
+            return most, state, path, y
+        return most, state, None if path is None else path[:, 0], None if y is None else y[0]
 
     def _made(
         self, task: Task, lanes: slice, y: Array | None, kept: Memory | None = None
@@ -391,7 +393,8 @@ class Plan:
         if not total:
             state[self.time] = begin
             state[self.size, :count] = size if isinstance(size, float) else size.reshape(-1)[lanes]
-        memory.block[:, :, count:] = memory.block[:, :, :1]
+        if count < state.shape[1]:
+            memory.block[:, :, count:] = memory.block[:, :, :1]
         memory.arrays["stops"][:2], memory.floats[ORIGIN] = end, begin
         if stops is not None:
             self._put(stops, memory, end)
@@ -407,7 +410,7 @@ class Plan:
             state[self.taken], path = total, path if kept is None else path.copy()
         else:
             path = self._to_the_end(memory, count, begin, numbers.max_steps)
-        if path is None or (state[self.trouble, :count] > 0).any():
+        if path is None or (self.trouble and (state[self.trouble, :count] > 0).any()):
             return None
         if y is not None:
             y[lanes] = memory.arrays["out"][: y.shape[2], :, :count].transpose(2, 1, 0)
@@ -468,9 +471,9 @@ class Plan:
             integers[BEGIN] = 0
             self.kernel.run(memory.address)
             lanes = state[self.alive, :count]
-            if not lanes.all() or state[self.taken, :count].max() >= most:
-                return None
             left = lanes.max()
+            if left >= 0 and (not lanes.all() or state[self.taken, :count].max() >= most):
+                return None
             if self.keeps:
                 parts.append(path[path[:, n + 1, :count].any(axis=-1), :, :count])  # rows with steps
                 self.rows *= 1 + (left > 0)  # the path is full
