@@ -183,16 +183,14 @@ def _rows_of_function(f: FunctionType) -> list[tuple[str, Read]]:
 @lru_cache(maxsize=256)
 def _names(code: CodeType) -> tuple[list[str], list[str], list[str]]:
     """The globals that code names, the modules that it imports, and all names in it, with those of nested functions."""
-    steps = list(dis.get_instructions(code))
-    found = [
-        [step.argval for step in steps if step.opname in ("LOAD_GLOBAL", "LOAD_NAME")],
-        [step.argval for step in steps if step.opname == "IMPORT_NAME"],
-        list(code.co_names),
-    ]
-    for nested in (x for x in code.co_consts if isinstance(x, CodeType)):
-        found = [mine + its for mine, its in zip(found, _names(nested), strict=True)]
-    names, imported, every = (list(dict.fromkeys(some)) for some in found)
-    return names, imported, every
+    codes = [code]
+    for outer in codes:
+        codes += [x for x in outer.co_consts if isinstance(x, CodeType)]
+    steps = [(step.opname, step.argval) for some in codes for step in dis.get_instructions(some)]
+    names = [value for what, value in steps if what in ("LOAD_GLOBAL", "LOAD_NAME")]
+    imported = [value for what, value in steps if what == "IMPORT_NAME"]
+    every = [name for some in codes for name in some.co_names]
+    return list(dict.fromkeys(names)), list(dict.fromkeys(imported)), list(dict.fromkeys(every))
 
 
 def _in_cell(cell: Part) -> Part:
@@ -281,12 +279,12 @@ class Parts:
     """The parts of functions, compared in later calls."""
 
     def __init__(self, sources: Sequence[Part]) -> None:
-        walks = [enumerate(_walk("", partial(sources.__getitem__, i), {})) for i in range(len(sources))]
-        # a source itself, the first of its parts, is the same as before
-        parts = [(read, x, is_leaf) for walk in walks for k, (_, read, x, is_leaf) in walk if k or is_leaf]
-        self._parts: list[tuple[Read, Part]] = [(read, x) for read, x, _ in parts]
+        parts = [part for i in range(len(sources)) for part in _walk("", partial(sources.__getitem__, i), {})]
+        self._parts: list[tuple[Read, Part]] = [
+            (read, x) for label, read, x, _ in parts if label
+        ]  # without the sources
         # of those that may change in place: how to read the content, and the content
-        self._contents = [looked for _, x, is_leaf in parts if is_leaf and (looked := _looked(x)) is not None]
+        self._contents = [looked for _, _, x, is_leaf in parts if is_leaf and (looked := _looked(x)) is not None]
 
     def changed(self) -> bool:
         """Whether the code of a function, or what it names, is another one than before."""

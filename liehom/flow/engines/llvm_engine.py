@@ -8,7 +8,7 @@ before that step, which the automaton then makes or diagnoses.
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Mapping
-from typing import Any, TypeAlias, final
+from typing import Any, final
 
 import numpy as np
 
@@ -61,10 +61,8 @@ from liehom.flow.tracing.machine import Kernel
 COPIES_WITH_EVENTS = 8  # arrays of the size of the path, about, while events are sought
 MIN_STEPS_WITH_ENDS = 64  # with terminal events, steps in the first call; further calls double their number
 MAX_PLANS = 64  # number of plans that are kept
-
-Latest: TypeAlias = tuple[tuple[int, ...], Numbers | None, bool, Plan | None]
+NEVER: tuple[tuple[int, ...], Numbers | None, bool, Plan | None] = (), None, True, None
 """Of the latest call without args and events: shape, numbers, whether it had no output times, and its plan."""
-NEVER: Latest = (), None, True, None
 
 
 @final
@@ -76,7 +74,7 @@ class LlvmEngine:
     def __init__(self, store: CodeStore | None = None, watch: Watch | None = None) -> None:
         self._store = CodeStore() if store is None else store
         self._plans: dict[Hashable, Plan] = {}
-        self._latest: Latest = NEVER
+        self._latest = NEVER
         self._lattice: LatticeStep | None = None
         self._watch = watch  # of the psi from which the store was made
 
@@ -273,13 +271,8 @@ class CompiledRun:
         if graph.reached is None:
             dt, before = float(np.max(np.asarray(run.options.dt))), int(taken[0])
             last = int(min(before + steps, self.total))
-            fields = {
-                "begin": before,
-                "end": last,
-                "total": self.total,
-                "step_size": run.direction * dt,
-                "first_stop": int(done[0]),
-            }
+            fields = {"begin": before, "end": last, "total": self.total, "step_size": run.direction * dt}
+            fields["first_stop"] = int(done[0])
             steps, rows["count"] = last - before, float(last)
         else:
             given = run.options.dt

@@ -111,8 +111,8 @@ def floats(what: str, given: object) -> Array | None:
     return value.astype(np.float64) if value.dtype.kind in "iu" else None
 
 
-def _stops_of(times: Array, begin: float, end: float) -> tuple[int, int] | None:
-    """The slice of output times after the begin of a span and before its end; None if they are not in order."""
+def _stops_of(times: Array, begin: float, end: float) -> tuple[Array, int, int] | None:
+    """Output times with the slice of those within a span; None if they are not in order."""
     if times.ndim != 1 or not len(times):
         return None
     first, last = float(times[0]), float(times[-1])
@@ -120,7 +120,7 @@ def _stops_of(times: Array, begin: float, end: float) -> tuple[int, int] | None:
         return None
     if len(times) > 1 and not (np.diff(times) * (1 if end > begin else -1) > 0).all():
         return None
-    return int(first == begin), len(times) - int(last == end)
+    return times, int(first == begin), len(times) - int(last == end)
 
 
 def form_of(
@@ -199,16 +199,13 @@ TROUBLE = frozenset(["unkept", "failed", "near", "short", "conservation_short", 
 """Numbers of steps that are 0, or -inf, if the steps are as they should be."""
 
 
-Stops: TypeAlias = tuple[Array, int, int] | None
-"""Output times, and the slice of those within the span."""
-
-Task: TypeAlias = tuple[Numbers, Array, Stops, float, float, Any, float, Mapping[str, Any], int]
+Task: TypeAlias = tuple[Numbers, Array, tuple[Array, int, int] | None, float, float, Any, float, Mapping[str, Any], int]
 """Numbers of a call, points (..., N), output times, begin and end of the span, sizes with their sign, the direction,
 numbers of args by name, and the number of steps in lockstep, 0 for steps of their own sizes."""
 
 Made: TypeAlias = tuple[float, Array, Any, Any]
-"""The largest number of steps, numbers of states (k, L), the path (N + 2, L, j + 1) of points, times and signed sizes,
-and points (L, N, k) at output times, for one trajectory (N + 2, j + 1) and (N, k)."""
+"""The largest number of steps, states (k, L), the path (N + 2, ..., j + 1) of points, times and signed sizes, and points
+(..., N, k) at output times."""
 
 
 @final
@@ -221,6 +218,7 @@ class Plan:
         shape, graph, options = np.shape(problem.start), kernel.graph, problem.options
         self.kernel, self.problem, self.step, self.work, self.prepared = kernel, problem, step, work, calls
         self.shape, self.n, self.lanes, self.events = shape[:-1], shape[-1], int(np.prod(shape[:-1], dtype=int)), events
+        self.axes = (*range(1, len(shape)), 0, len(shape))  # which take a path (N, ..., j + 1) to (..., N, j + 1)
         self.lockstep, self.place = graph.reached is None, {name: i for i, name in enumerate(kernel.names)}
         self.alive, self.taken, self.time, self.size = (self.place.get(x, 0) for x in ("alive", "count", "t", "h"))
         recorded = {f"e{i}": name for i, name in enumerate([*graph.largest, *graph.summed])}
@@ -232,8 +230,7 @@ class Plan:
         self.slots = self.constants.data.cast("B").cast("d")
         self.slot = {name: i for i, name in enumerate(kernel.run_constants)}
         self.own = [(i, OF_A_CALL.index(name)) for name, i in self.slot.items() if name in OF_A_CALL]
-        if "checks" in self.slot:
-            self.slots[self.slot["checks"]] = 1.0
+        self.constants[[i for name, i in self.slot.items() if name == "checks"]] = 1.0
         names = () if problem.args is None else arg_values(problem.args, len(self.shape))
         self.names = [(name, self.slot.get(name)) for name in names]
         self.keeps = options.t_eval is None or options.dense_output or events is not None
@@ -274,12 +271,8 @@ class Plan:
                 if total >= numbers.max_steps:
                     return None
             size = direction * size
-        stops: Stops = None
-        if times is not None:
-            if (inner := _stops_of(times, begin, end)) is None:
-                return None
-            stops = times, *inner
-        if not (self.events is None or self.is_current):
+        stops = None if times is None else _stops_of(times, begin, end)
+        if (times is not None and stops is None) or not self.is_current:
             return None
         try:
             memory = self.free.pop()
@@ -298,7 +291,7 @@ class Plan:
     def _solution(self, task: Task, made: Made, args: Pytree) -> Solution | None:
         """The solution of what was made; None if an ordinary call should say more of it."""
         _, points, stops, begin, end, _, direction, values, _ = task
-        (most, state, path, y), n, shape, log, start = made, self.n, self.shape, None, None
+        (most, state, path, y), n, log, start = made, self.n, None, None
         if not self.is_judged and most >= MIN_STEPS:
             self.is_judged = True  # an ordinary call says whether the field is stiff
             return None
@@ -307,11 +300,9 @@ class Plan:
             if (log := self.events(steps, {**values, "direction": direction}, (begin, end))) is None:
                 return None
         if stops is not None:
-            times, y = stops[0].copy(), y.reshape(*shape, *y.shape[1:]) if shape else y
-        elif shape:
-            times, y = path[n].reshape(*shape, -1), path[:n].swapaxes(0, 1).reshape(*shape, n, -1)
+            times = stops[0].copy()
         else:
-            times, y = path[n], path[:n]
+            times, y = path[n], path[:n].transpose(self.axes)
         if self.ranked is not None:  # what the other entries need is copied: points may change
             start = points.reshape(self.lanes, n).copy()
         return solution_of(times, y, END, partial(self._others, task, args, state, path, start, log))
@@ -357,9 +348,9 @@ class Plan:
 
     def _in_pieces(self, task: Task, memory: Memory | None) -> Made | None:
         """What is made of the lanes in pieces, in threads if they are many; None if one of them fails."""
-        stops, total = task[2], task[-1]
+        stops, total, n = task[2], task[-1], self.n
         rows = total if self.lockstep or not self.keeps else self.rows
-        y = None if stops is None else np.empty((self.lanes, self.n, len(stops[0])))
+        y = None if stops is None else np.empty((self.lanes, n, len(stops[0])))
         if memory is not None:
             pieces = [self._made(task, slice(0, self.lanes), y, memory)]
         else:
@@ -373,10 +364,8 @@ class Plan:
         most = state[self.kept.index("count")].max()
         if most >= task[0].max_steps:
             return None
-        path: Any = _joined([x[1] for x in made]).transpose(1, 2, 0) if self.keeps else None
-        if self.shape:
-            return most, state, path, y
-        return most, state, None if path is None else path[:, 0], None if y is None else y[0]
+        path = _joined([x[1] for x in made]).transpose(1, 2, 0).reshape(n + 2, *self.shape, -1) if self.keeps else None
+        return most, state, path, None if y is None else y.reshape(*self.shape, n, -1)
 
     def _made(
         self, task: Task, lanes: slice, y: Array | None, kept: Memory | None = None
@@ -512,7 +501,7 @@ class Plan:
         report = statistics.report(p.action, p.options.clock, p.orbit_dimension, direction, **how)
 
         def dense() -> DenseSolution:
-            steps = path.reshape(self.n + 2, *shape, -1).swapaxes(0, -1)
+            steps = path.swapaxes(0, -1)
             ends, points, sizes = steps[..., self.n], steps[..., : self.n], np.nan_to_num(steps[1:, ..., self.n + 1])
             psi = Generator(bound, p.orbit_dimension, points[0])
             step = p.step.prepare(p.action, psi, psi.start, np.full(shape, p.span[0]))  # type: ignore[arg-type]
