@@ -204,8 +204,8 @@ Task: TypeAlias = tuple[Numbers, Array, tuple[Array, int, int] | None, float, fl
 numbers of args by name, and the number of steps in lockstep, 0 for steps of their own sizes."""
 
 Made: TypeAlias = tuple[float, Array, Any, Any]
-"""The largest number of steps, states (k, L), the path (N + 2, ..., j + 1) of points, times and signed sizes, and points
-(..., N, k) at output times."""
+"""The largest number of steps, states (k, L), the path (N + 2, ..., j + 1) of points, times and signed sizes, and what
+there is at output times (..., N, k)."""
 
 
 @final
