@@ -203,9 +203,9 @@ Task: TypeAlias = tuple[Numbers, Array, tuple[Array, int, int] | None, float, fl
 """Numbers of a call, points (..., N), output times, begin and end of the span, sizes with their sign, the direction,
 numbers of args by name, and the number of steps in lockstep, 0 for steps of their own sizes."""
 
-Made: TypeAlias = tuple[float, Array, Any, Any]
-"""The largest number of steps, states (k, L), the path (N + 2, ..., j + 1) of points, times and signed sizes, and what
-there is at output times (..., N, k)."""
+Made: TypeAlias = tuple[float, Any, Any, Any]
+"""The largest number of steps, states (k, L) or the bytes of one, the path (N + 2, ..., j + 1) of points, times and
+signed sizes, and what there is at output times (..., N, k)."""
 
 
 @final
@@ -302,13 +302,13 @@ class Plan:
         if stops is not None:
             times = stops[0].copy()
         else:
-            times, y = path[n], path[:n].transpose(self.axes)
+            times, y = path[n], path[:n].transpose(self.axes) if self.shape else path[:n]
         if self.ranked is not None:  # what the other entries need is copied: points may change
             start = points.reshape(self.lanes, n).copy()
         return solution_of(times, y, END, partial(self._others, task, args, state, path, start, log))
 
     def _alone(self, task: Task, memory: Memory) -> Made | None:
-        """What is made of one trajectory, by few operations; None if its path has no room, or if it fails."""
+        """States and path of one trajectory, by few operations; None if the path has no room, or if a step fails."""
         numbers, points, stops, begin, end, size, _, _, total = task
         cells, integers, n = memory.cells, memory.integers, self.n
         path: Any = None
@@ -344,10 +344,10 @@ class Plan:
                 path[n + 1, 0] = 1.0
                 path = path[:, path[n + 1] != 0]
         y = None if stops is None else memory.arrays["out"][: len(stops[0]), :, 0].T.copy()
-        return most, memory.state.copy(), path, y
+        return most, cells.tobytes(), path, y
 
     def _in_pieces(self, task: Task, memory: Memory | None) -> Made | None:
-        """What is made of the lanes in pieces, in threads if they are many; None if one of them fails."""
+        """States and paths of the lanes in pieces, in threads if they are many; None if one of them fails."""
         stops, total, n = task[2], task[-1], self.n
         rows = total if self.lockstep or not self.keeps else self.rows
         y = None if stops is None else np.empty((self.lanes, n, len(stops[0])))
@@ -477,7 +477,7 @@ class Plan:
         return np.where(moved[:, None], path, np.nan)
 
     def _others(
-        self, task: Task, args: Pytree, state: Array, path: Array, start: Array | None, log: EventLog | None
+        self, task: Task, args: Pytree, state: Array | bytes, path: Array, start: Array | None, log: EventLog | None
     ) -> dict[str, object]:
         """The other entries of a solution, which are made when one of them is asked for."""
         p, shape, graph, (given, _, stops, *span, _, direction, _, _) = (
@@ -488,7 +488,8 @@ class Plan:
         )
         bound = p.field if args is None else p.field.with_args(args)
         p = replace(p, bound=bound, span=(np.float64(span[0]), np.float64(span[1])))
-        row = dict(zip(self.kept, state, strict=True))
+        rows = np.frombuffer(state, count=len(self.kept))[:, None] if isinstance(state, bytes) else state
+        row = dict(zip(self.kept, rows, strict=True))
         statistics = StepStatistics(self.step, shape)
         if self.ranked is not None and start is not None:
             note_ranks(statistics, p, self.step, start[self.ranked], self.ranked, shape)
