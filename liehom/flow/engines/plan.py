@@ -243,7 +243,7 @@ class Plan:
             self.path: Any = None
         self.is_judged, self.rows = options.dt is not None, ROOM
         self.most = max(1, OPERATIONS_PER_CALL // work)  # steps of a call
-        # rows of a path up to which there is one piece
+        # rows of a path, and output times, up to which there is one piece in the memory that is kept
         row = max(8 * (self.n + 2) / PATH_BYTES_PER_CALL, work / OPERATIONS_PER_CALL, 1 / LANE_STEPS_FOR_THREADS)
         self.short = int(1 / (row * self.lanes))
 
@@ -281,7 +281,7 @@ class Plan:
         try:
             values = self._take(numbers, begin, end, rest, direction, found) if self.own or found else NO_VALUES
             task = numbers, points, stops, begin, end, size, direction, values, total
-            is_short = (total or self.keeps * self.rows) <= self.short
+            is_short = (total or self.keeps * self.rows) <= self.short and (times is None or len(times) <= self.short)
             made = self._alone(task, memory) if memory and self.is_alone and is_short else None
             made = self._in_pieces(task, memory if is_short else None) if made is None else made
             return None if made is None else self._solution(task, made, args)
