@@ -361,7 +361,7 @@ class Plan:
         if not made or len(made) < len(pieces):
             return None
         state = made[0][0] if len(made) == 1 else np.concatenate([x[0] for x in made], axis=1)
-        most = state[self.kept.index("count")].max()
+        most = np.maximum.reduce(state[self.kept.index("count")])
         if most >= task[0].max_steps:
             return None
         path = _joined([x[1] for x in made]).transpose(1, 2, 0).reshape(n + 2, *self.shape, -1) if self.keeps else None
@@ -377,16 +377,19 @@ class Plan:
         count, n, state, integers = len(points), self.n, memory.state, memory.integers
         for row, number in zip(memory.rows, self.kernel.lane_constants, strict=False):
             row[:count] = values[number.name][lanes] if isinstance(number, LaneConstant) else number(points)
-        memory.block[:] = memory.first
+        memory.cells[:] = memory.fresh
         memory.points[:] = points
-        if not total:
-            state[self.time] = begin
-            state[self.size, :count] = size if isinstance(size, float) else size.reshape(-1)[lanes]
+        if not total and isinstance(size, float):
+            state[self.time], state[self.size] = begin, size
+        elif not total:
+            state[self.time], state[self.size, :count] = begin, size.reshape(-1)[lanes]
         if count < state.shape[1]:
             memory.block[:, :, count:] = memory.block[:, :, :1]
-        memory.arrays["stops"][:2], memory.floats[ORIGIN] = end, begin
+        memory.floats[ORIGIN] = begin
         if stops is not None:
             self._put(stops, memory, end)
+        else:
+            memory.arrays["stops"][:2] = end
         if total:
             path: Any = memory.path(total, n + 2)[: total + 1, :, :count] if self.keeps else state
             if self.keeps:
@@ -460,7 +463,7 @@ class Plan:
             integers[BEGIN] = 0
             self.kernel.run(memory.address)
             lanes = state[self.alive, :count]
-            left = lanes.max()
+            left = np.maximum.reduce(lanes)
             if left >= 0 and (not lanes.all() or state[self.taken, :count].max() >= most):
                 return None
             if self.keeps:
