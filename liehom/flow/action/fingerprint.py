@@ -15,6 +15,7 @@ import pickle
 import re
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from functools import cached_property, lru_cache, partial
 from types import CodeType, FunctionType, MethodType, ModuleType
 from typing import Any, TypeAlias, final
@@ -182,16 +183,14 @@ def _rows_of_function(f: FunctionType) -> list[tuple[str, Read]]:
 @lru_cache(maxsize=256)
 def _names(code: CodeType) -> tuple[list[str], list[str], list[str]]:
     """The globals that code names, the modules that it imports, and all names in it, with those of nested functions."""
-    steps = list(dis.get_instructions(code))
-    found = [
-        [step.argval for step in steps if step.opname in ("LOAD_GLOBAL", "LOAD_NAME")],
-        [step.argval for step in steps if step.opname == "IMPORT_NAME"],
-        list(code.co_names),
-    ]
-    for nested in (x for x in code.co_consts if isinstance(x, CodeType)):
-        found = [mine + its for mine, its in zip(found, _names(nested), strict=True)]
-    names, imported, every = (list(dict.fromkeys(some)) for some in found)
-    return names, imported, every
+    codes = [code]
+    for outer in codes:
+        codes += [x for x in outer.co_consts if isinstance(x, CodeType)]
+    steps = [(step.opname, step.argval) for some in codes for step in dis.get_instructions(some)]
+    names = [value for what, value in steps if what in ("LOAD_GLOBAL", "LOAD_NAME")]
+    imported = [value for what, value in steps if what == "IMPORT_NAME"]
+    every = [name for some in codes for name in some.co_names]
+    return list(dict.fromkeys(names)), list(dict.fromkeys(imported)), list(dict.fromkeys(every))
 
 
 def _in_cell(cell: Part) -> Part:
@@ -280,15 +279,20 @@ class Parts:
     """The parts of functions, compared in later calls."""
 
     def __init__(self, sources: Sequence[Part]) -> None:
-        walks = [enumerate(_walk("", partial(sources.__getitem__, i), {})) for i in range(len(sources))]
-        # a source itself, the first of its parts, is the same as before
-        parts = [part for walk in walks for k, part in walk if k or part[3]]
-        self._rows = [(read, x, *_looked(x, is_leaf)) for _, read, x, is_leaf in parts]
+        parts = [part for i in range(len(sources)) for part in _walk("", partial(sources.__getitem__, i), {})]
+        self._parts: list[tuple[Read, Part]] = [
+            (read, x) for label, read, x, _ in parts if label
+        ]  # without the sources
+        # of those that may change in place: how to read the content, and the content
+        self._contents = [looked for _, _, x, is_leaf in parts if is_leaf and (looked := _looked(x)) is not None]
 
     def changed(self) -> bool:
         """Whether the code of a function, or what it names, is another one than before."""
-        for row in self._rows:  # noqa: SIM110 - in every repeated call, where a generator costs as much as the rows
-            if (row[2] is not None or row[0]() is not row[1]) and _has_changed(*row):
+        for read, x in self._parts:
+            if read() is not x and _is_another(read, x):
+                return True
+        for look, content in self._contents:  # noqa: SIM110 - in every repeated call; a generator costs as much again
+            if look() != content:
                 return True
         return False
 
@@ -298,7 +302,7 @@ class Watch(Parts):
     """The parts of the psi from which code was compiled, and one value of it, compared in later calls."""
 
     def __init__(self, field: GeneratorField, start: Values, t: Real | np.floating[Any]) -> None:
-        self.field, source = field, source_of(field)
+        source: Any = source_of(field)
         super().__init__([source])
         self._read: Read = bytes  # returns the value
         if callable(source) and not is_traced(start) and not is_traced(t):
@@ -307,23 +311,26 @@ class Watch(Parts):
             inner = field._components
             function = (inner.components if isinstance(inner, LeastNorm) else inner)._function
             time = np.full(m.shape[:-1], t)[()]
-            self._read = lambda: np.asarray(function(m, time)).tobytes()
-        self._known = self._value()
-        self._known = self._known if self._value() == self._known else None  # a value that varies says nothing
-        rows = self._rows
-        self._rows = [row for row in rows if not _has_changed(*row)]  # the others are the state of psi
+            self._read = partial(function, m, time)
+        self._known: bytes | None = None
+        with suppress(Exception):  # of the user's function
+            first, second = (np.asarray(self._read()).tobytes() for _ in range(2))
+            self._known = first if first == second else None  # a value that varies says nothing
+        before = len(self._parts) + len(self._contents)
+        # the others are the state of psi
+        self._parts = [part for part in self._parts if not _is_another(*part)]
+        self._contents = [(look, content) for look, content in self._contents if look() == content]
         # whether psi keeps no state and repeats its value, as far as can be seen
-        self.steady: bool = self._known is not None and len(self._rows) == len(rows)
+        self.steady: bool = self._known is not None and len(self._parts) + len(self._contents) == before
 
     def changed(self) -> bool:
         """Whether the code of psi, what it names, or its value at the initial point is another one than before."""
-        return super().changed() or (self._known is not None and self._value() not in (self._known, None))
-
-    def _value(self) -> bytes | None:
+        if Parts.changed(self):  # quicker than super()
+            return True
         try:
-            return self._read()
+            return self._known is not None and np.asarray(self._read()).tobytes() != self._known
         except Exception:  # noqa: BLE001 - of the user's function
-            return None
+            return False
 
 
 def source_of(field: GeneratorField) -> Part:
@@ -334,22 +341,21 @@ def source_of(field: GeneratorField) -> Part:
     return source
 
 
-def _looked(x: Part, is_leaf: bool) -> tuple[Read | None, object]:
-    """(how to read the content of a part that may change in place, its content); (None, None) if it has none."""
+def _looked(x: Part) -> tuple[Read, object] | None:
+    """(how to read the content of a part that may change in place, its content); None if it has none."""
     look: Read = partial(pickle.dumps, x, 5)
-    if not is_leaf or type(x) in ATOMS or callable(x) or is_jax(x) or isinstance(x, CodeType | ModuleType):
-        return None, None
+    if type(x) in ATOMS or callable(x) or is_jax(x) or isinstance(x, CodeType | ModuleType):
+        return None
     if isinstance(x, np.ndarray) and not x.dtype.hasobject:
         entries = x.reshape(-1) if x.flags.c_contiguous else x[tuple(slice(8) for _ in x.shape)]
         look = entries[:: max(1, -(-entries.nbytes // LARGEST))].tobytes
     try:
         return look, look()
     except Exception:  # noqa: BLE001 - what cannot be pickled has no content
-        return None, None
+        return None
 
 
-def _has_changed(read: Read, x: Part, look: Read | None, content: object) -> bool:
+def _is_another(read: Read, x: Part) -> bool:
+    """Whether a part is no longer what it was; numbers and strings may be other objects."""
     now = read()
-    if now is not x and not (type(now) is type(x) and type(now) in ATOMS and now == x):
-        return True
-    return look is not None and look() != content
+    return now is not x and not (type(now) is type(x) and type(now) in ATOMS and now == x)

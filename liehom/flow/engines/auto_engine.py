@@ -12,14 +12,13 @@ that changes its own state or does not repeat its value, and a step that a user 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from importlib.util import find_spec
-from typing import Any, final
+from typing import final
 
 import numpy as np
 
 from liehom.base.errors import LiehomError, TraceError
-from liehom.base.typing import Pytree, Values
+from liehom.base.typing import Values
 from liehom.flow.action.field import GeneratorField
 from liehom.flow.action.fingerprint import Watch
 from liehom.flow.engines.engine import NumpyEngine, Problem, executed
@@ -59,7 +58,11 @@ class AutoEngine:
         self.refused = set[type[Kernel]]() if find_spec("llvmlite") else {Kernel}
         python = CodeStore(PythonKernel)
         self.stores = {PythonKernel: python, Kernel: CodeStore(Kernel, python.graphs)}
-        self._machine = LlvmEngine()
+        self._take(LlvmEngine())
+
+    def _take(self, machine: LlvmEngine) -> None:
+        """Leave calls like one before to an engine."""
+        self._machine, self.again = machine, machine.again
 
     def __reduce__(self) -> tuple[type[AutoEngine], tuple[()]]:
         return type(self), ()  # code belongs to a process
@@ -83,14 +86,10 @@ class AutoEngine:
         """Whether psi is a function of its arguments alone, as far as can be seen; it is watched from now on."""
         if self._watch is None:
             self._watch = watch = Watch(problem.bound, problem.start, problem.span[0])
-            self._machine = LlvmEngine(self.stores[Kernel], watch)
+            self._take(LlvmEngine(self.stores[Kernel], watch))
             if not (watch.steady and _repeats(problem.bound, problem.start.shape[-1])):
                 self.refused |= self.stores.keys()
         return not self.refused >= self.stores.keys()
-
-    def again(self, t_span: object, y0: object, options: Mapping[str, Any], args: Pytree = None) -> Solution | None:
-        """The solution of a call like one before, by machine code; None if it needs a closer look."""
-        return self._machine.again(t_span, y0, options, args)
 
     def kind(self, start: Values) -> type[Kernel] | None:
         """The kind of code for initial points (..., N); None as long as numpy makes their steps."""

@@ -61,6 +61,8 @@ from liehom.flow.tracing.machine import Kernel
 COPIES_WITH_EVENTS = 8  # arrays of the size of the path, about, while events are sought
 MIN_STEPS_WITH_ENDS = 64  # with terminal events, steps in the first call; further calls double their number
 MAX_PLANS = 64  # number of plans that are kept
+NEVER: tuple[tuple[int, ...], Numbers | None, bool, Plan | None] = (), None, True, None
+"""Of the latest call without args and events: shape, numbers, whether it had no output times, and its plan."""
 
 
 @final
@@ -72,8 +74,7 @@ class LlvmEngine:
     def __init__(self, store: CodeStore | None = None, watch: Watch | None = None) -> None:
         self._store = CodeStore() if store is None else store
         self._plans: dict[Hashable, Plan] = {}
-        # of a call with numbers alone: shape, numbers, plan
-        self._latest: tuple[tuple[int, ...], Numbers | None, Plan | None] = (), None, None
+        self._latest = NEVER
         self._lattice: LatticeStep | None = None
         self._watch = watch  # of the psi from which the store was made
 
@@ -83,7 +84,7 @@ class LlvmEngine:
     def solve(self, problem: Problem) -> Solution:
         """The solution of a problem."""
         if self._watch is None or self._watch.changed():
-            self._store, self._plans, self._latest, self._lattice = CodeStore(), {}, ((), None, None), None
+            self._store, self._plans, self._latest, self._lattice = CodeStore(), {}, NEVER, None
             self._watch = Watch(problem.bound, problem.start, problem.span[0])
         if problem.field.sites:
             step, self._lattice = self._lattice, None  # its planes serve one call at a time
@@ -105,32 +106,35 @@ class LlvmEngine:
 
     def again(self, t_span: object, y0: object, options: Mapping[str, Any], args: Pytree = None) -> Solution | None:
         """The solution of a call of a form that there was before; None if it needs a closer look."""
-        if not self._plans or self._watch is None:
+        if not self._plans:
             return None
         try:
-            first, last = t_span  # type: ignore[misc]
-            if type(first) not in KINDS or type(last) not in KINDS:  # type: ignore[has-type]
-                return None
-            points, times = floats("the start", y0), options.get("t_eval")
-            if points is None or (times is not None and (times := floats("t_eval", times)) is None):
-                return None
-            others, events = options, options.get("events")
-            if times is not None or events is not None:
-                others = {name: x for name, x in options.items() if name not in ("t_eval", "events")}
+            begin, end = t_span  # type: ignore[misc]
+            if not type(begin) is type(end) is float:  # type: ignore[has-type]
+                if type(begin) not in KINDS or type(end) not in KINDS:  # type: ignore[has-type]
+                    return None
+                begin, end = float(begin), float(end)  # type: ignore[has-type]
+            points, times, events = floats("the start", y0), None, None
+            if "t_eval" in options or "events" in options:
+                options = dict(options)
+                times, events = options.pop("t_eval", None), options.pop("events", None)
+                if times is not None and (times := floats("t_eval", times)) is None:
+                    return None
             try:
-                numbers = numbers_of(**others)
+                numbers = numbers_of(**options)
             except TypeError:  # sizes in an array are not hashable
-                numbers = numbers_of.__wrapped__(**others)
-            found = None if args is None else leaves(args)
-            shape, known, plan = self._latest
-            if found is not None or others is not options or numbers is not known or points.shape != shape:
-                shape = points.shape
-                plan = None if numbers is None else self._plans.get(form_of(shape, numbers, times, events, found))
-                if found is None and others is options:
-                    self._latest = shape, numbers, plan
-            if numbers is None or plan is None or self._watch.changed():
+                numbers = numbers_of.__wrapped__(**options)
+            if points is None or numbers is None:
                 return None
-            return plan(numbers, points, float(first), float(last), times, args, found)  # type: ignore[has-type]
+            found = None if args is None else leaves(args)
+            (shape, known, is_free, plan), is_plain = self._latest, args is events is None
+            if not (is_plain and numbers is known and (times is None) is is_free and points.shape == shape):
+                plan = self._plans.get(form_of(points.shape, numbers, times, events, found))
+                if is_plain:
+                    self._latest = points.shape, numbers, times is None, plan
+            if plan is None or self._watch.changed():  # type: ignore[union-attr]
+                return None
+            return plan(numbers, points, begin, end, times, args, found)
         except (TypeError, ValueError, OverflowError):  # not numbers
             return None
 
@@ -149,7 +153,7 @@ class LlvmEngine:
         events = None if o.events is None else planned_events(problem, run.step, dimension, np.asarray(solution.y))
         if events is None and o.events is not None:
             return
-        self._latest = (), None, None
+        self._latest = NEVER
         if len(self._plans) >= MAX_PLANS:
             self._plans.pop(next(iter(self._plans)))
         kernel = self._store.kernel(key, graph, int(np.prod(start.shape[:-1], dtype=int)))
@@ -267,13 +271,8 @@ class CompiledRun:
         if graph.reached is None:
             dt, before = float(np.max(np.asarray(run.options.dt))), int(taken[0])
             last = int(min(before + steps, self.total))
-            fields = {
-                "begin": before,
-                "end": last,
-                "total": self.total,
-                "step_size": run.direction * dt,
-                "first_stop": int(done[0]),
-            }
+            fields = {"begin": before, "end": last, "total": self.total, "step_size": run.direction * dt}
+            fields["first_stop"] = int(done[0])
             steps, rows["count"] = last - before, float(last)
         else:
             given = run.options.dt

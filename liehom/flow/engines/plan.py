@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import contextlib
-import threading
 from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import replace
-from functools import lru_cache
+from functools import lru_cache, partial
 from itertools import pairwise
 from math import ceil, inf
 from typing import Any, NamedTuple, TypeAlias, final
@@ -112,14 +111,16 @@ def floats(what: str, given: object) -> Array | None:
     return value.astype(np.float64) if value.dtype.kind in "iu" else None
 
 
-def _are_in_order(times: Array, begin: float, end: float) -> bool:
-    """Whether times are increasing, or decreasing, from the begin of a span to its end."""
-    if not len(times):
-        return False
+def _stops_of(times: Array, begin: float, end: float) -> tuple[Array, int, int] | None:
+    """Output times with the slice of those within a span; None if they are not in order."""
+    if times.ndim != 1 or not len(times):
+        return None
     first, last = float(times[0]), float(times[-1])
     if not (begin <= first <= last <= end if end > begin else begin >= first >= last >= end):
-        return False
-    return len(times) == 1 or bool((np.diff(times) * (1 if end > begin else -1) > 0).all())
+        return None
+    if len(times) > 1 and not (np.diff(times) * (1 if end > begin else -1) > 0).all():
+        return None
+    return times, int(first == begin), len(times) - int(last == end)
 
 
 def form_of(
@@ -186,23 +187,25 @@ def ranked(count: int) -> IntegerArray:
 # made again in the ordinary way.
 
 CHUNK = 16_384  # number of lanes, at most, that are copied in, run, and copied out at once
-SMALL = 64  # number of lanes up to which memory is kept from call to call
+SMALL = 1024  # number of lanes up to which memory is kept from call to call
 ROOM = 64  # rows of the path, at first, of steps whose number is not known
 LAST_STOP, FIRST_STOP, ORIGIN, BEGIN, END_STEP, TOTAL, STEP_SIZE = (
     PLACES[name] for name in ("last_stop", "first_stop", "origin", "begin", "end", "total", "step_size")
 )
-OF_A_CALL = ("checks", "direction", "rest", "end", "rtol", "atol", "max_step", "tiny", "gap", "latest")
+OF_A_CALL = ("rest", "end", "direction", "tiny", "latest", "rtol", "atol", "max_step", "gap")
 """The numbers of a call that a kernel may take, besides args."""
+NO_VALUES: Mapping[str, Any] = {}
 TROUBLE = frozenset(["unkept", "failed", "near", "short", "conservation_short", "conservation_missed"])
 """Numbers of steps that are 0, or -inf, if the steps are as they should be."""
 
 
-Piece: TypeAlias = tuple[slice, Array | None, Array]
-"""Lanes, the rows (j + 1, N + 2, L) of their path, which are points, times and signed sizes, and numbers of states."""
+Task: TypeAlias = tuple[Numbers, Array, tuple[Array, int, int] | None, float, float, Any, float, Mapping[str, Any], int]
+"""Numbers of a call, points (..., N), output times, begin and end of the span, sizes with their sign, the direction,
+numbers of args by name, and the number of steps in lockstep, 0 for steps of their own sizes."""
 
-Task: TypeAlias = tuple[Numbers, Array, Array | None, tuple[float, float], Mapping[str, Any], int, Array | None, bool]
-"""Numbers of a call, points (L, N), output times, ends of the span, numbers of args and the direction by name, number
-of steps in lockstep, points (L, N, k) at output times, and whether all steps are kept."""
+Made: TypeAlias = tuple[float, Any, Any, Any]
+"""The largest number of steps, states (k, L) or the bytes of one, the path (N + 2, ..., j + 1) of points, times and
+signed sizes, and what there is at output times (..., N, k)."""
 
 
 @final
@@ -212,31 +215,35 @@ class Plan:
     def __init__(
         self, kernel: Kernel, problem: Problem, step: Step, work: int, calls: int, events: PlannedEvents | None
     ) -> None:  # fmt: skip
-        self.events = events
-        shape, graph = np.shape(problem.start), kernel.graph
+        shape, graph, options = np.shape(problem.start), kernel.graph, problem.options
         self.kernel, self.problem, self.step, self.work, self.prepared = kernel, problem, step, work, calls
-        self.shape, self.n, self.lanes = shape[:-1], shape[-1], int(np.prod(shape[:-1], dtype=int))
-        self.place = {name: i for i, name in enumerate(kernel.names)}
+        self.shape, self.n, self.lanes, self.events = shape[:-1], shape[-1], int(np.prod(shape[:-1], dtype=int)), events
+        self.axes = (*range(1, len(shape)), 0, len(shape))  # which take a path (N, ..., j + 1) to (..., N, j + 1)
+        self.lockstep, self.place = graph.reached is None, {name: i for i, name in enumerate(kernel.names)}
         self.alive, self.taken, self.time, self.size = (self.place.get(x, 0) for x in ("alive", "count", "t", "h"))
-        self.lockstep = graph.reached is None
         recorded = {f"e{i}": name for i, name in enumerate([*graph.largest, *graph.summed])}
         self.trouble = [self.place[e] for e, name in recorded.items() if name in TROUBLE]
-        small = self.lanes <= SMALL
-        self.kept = [x for x in kernel.names if small or x in recorded or x in ("count", "tries")]
-        self.kept_rows: Any = slice(None) if small else [self.place[name] for name in self.kept]
-        self.count = self.kept.index("count")
+        self.kept = [x for x in kernel.names if self.lanes == 1 or x in recorded or x in ("count", "tries")]
+        self.kept_rows = [self.place[name] for name in self.kept]
         self.ranked = ranked(self.lanes) if step.uses_isotropy else None
         self.constants: Array = np.zeros(max(1, len(kernel.run_constants)))
         self.slots = self.constants.data.cast("B").cast("d")
         self.slot = {name: i for i, name in enumerate(kernel.run_constants)}
         self.own = [(i, OF_A_CALL.index(name)) for name, i in self.slot.items() if name in OF_A_CALL]
+        self.constants[[i for name, i in self.slot.items() if name == "checks"]] = 1.0
         names = () if problem.args is None else arg_values(problem.args, len(self.shape))
         self.names = [(name, self.slot.get(name)) for name in names]
-        self.memory = Memory(kernel, self.lanes, self.constants) if small else None
-        self.begin = len(kernel.names)
-        self.is_alone = not shape[:-1] and kernel.width == 1 and not kernel.lane_constants
-        self.is_judged, self.rows, self.lock = problem.options.dt is not None, ROOM, threading.Lock()
-        # rows of a path up to which there is one piece
+        self.keeps = options.t_eval is None or options.dense_output or events is not None
+        memory = Memory(kernel, self.lanes, self.constants) if self.lanes <= SMALL else None
+        self.free = [memory]  # the memory, unless a call is using it
+        self.is_alone = not self.shape and kernel.width == 1 and not kernel.lane_constants
+        if memory is not None:  # of one trajectory: point, initial point, the path as it is and as columns
+            cells, begin = memory.cells, len(kernel.names)
+            self.first, self.start, self.stops = cells[: self.n], cells[begin : begin + self.n], memory.views["stops"]
+            self.path: Any = None
+        self.is_judged, self.rows = options.dt is not None, ROOM
+        self.most = max(1, OPERATIONS_PER_CALL // work)  # steps of a call
+        # rows of a path, and output times, up to which there is one piece in the memory that is kept
         row = max(8 * (self.n + 2) / PATH_BYTES_PER_CALL, work / OPERATIONS_PER_CALL, 1 / LANE_STEPS_FOR_THREADS)
         self.short = int(1 / (row * self.lanes))
 
@@ -250,230 +257,222 @@ class Plan:
         args: Pytree, found: Sequence[Leaf] | None,
     ) -> Solution | None:  # fmt: skip
         """The solution, or None if the call needs a closer look."""
-        length, rest, dt, total = abs(end - begin), 8 * EPS * max(abs(begin), abs(end)), numbers.dt, 0
-        if not 0.0 < length < inf or (dt is not None and rest > (dt if type(dt) is float else np.min(dt))):
+        length, size, rest, total = abs(end - begin), numbers.dt, 8 * EPS * max(begin, end, -begin, -end), 0
+        direction = 1.0 if end > begin else -1.0
+        if not 0.0 < length < inf or (numbers.shape and numbers.shape != self.shape):
             return None
-        if (numbers.shape and numbers.shape != self.shape) or not (self.events is None or self.is_current):
-            return None
-        if self.lockstep:
-            total = max(ceil(length / dt - (SLACK + rest / dt)), 1)  # type: ignore[operator]
-            if total >= numbers.max_steps:
+        if size is None:
+            size = numbers.first_step or numbers.min_step or inf
+        else:
+            if rest > (size if type(size) is float else np.min(size)):
                 return None
-        if (times is not None and not _are_in_order(times, begin, end)) or not self.lock.acquire(blocking=False):
+            if self.lockstep:
+                total = max(ceil(length / size - (SLACK + rest / size)), 1)
+                if total >= numbers.max_steps:
+                    return None
+            size = direction * size
+        stops = None if times is None else _stops_of(times, begin, end)
+        if (times is not None and stops is None) or not self.is_current:
             return None
         try:
-            values = self._take(numbers, begin, end, rest, found)
-            if times is None and self.is_alone and (total or self.rows) <= self.short:
-                known = self._alone(numbers, points, (begin, end), values, total, args)
-                if known is not None:
-                    return known
-            points = points if len(self.shape) == 1 else points.reshape(self.lanes, self.n)
-            y = None if times is None else np.empty((self.lanes, self.n, len(times)))
-            keeps = y is None or numbers.dense or self.events is not None
-            return self._solution((numbers, points, times, (begin, end), values, total, y, keeps), args)
+            memory = self.free.pop()
+        except IndexError:  # another thread makes a call
+            return None
+        try:
+            values = self._take(numbers, begin, end, rest, direction, found) if self.own or found else NO_VALUES
+            task = numbers, points, stops, begin, end, size, direction, values, total
+            is_short = (total or self.keeps * self.rows) <= self.short and (times is None or len(times) <= self.short)
+            made = self._alone(task, memory) if memory and self.is_alone and is_short else None
+            made = self._in_pieces(task, memory if is_short else None) if made is None else made
+            return None if made is None else self._solution(task, made, args)
         finally:
-            self.lock.release()
+            self.free.append(memory)
 
-    def _solution(self, task: Task, args: Pytree) -> Solution | None:
-        _, points, times, span, values, total, y, keeps = task
-        rows = total if self.lockstep or not keeps else self.rows
-        path: Any
-        if self.memory is not None and rows <= self.short:
-            piece = self._made(task, slice(0, self.lanes), self.memory)
-            if piece is None:
-                return None
-            _, path, numbers = piece
-        else:
-            chunk = self._chunk(rows, keeps=keeps)
-            cuts = pairwise([*range(0, self.lanes, chunk), self.lanes] if chunk else [])
-            made = in_threads(lambda lanes: self._made(task, lanes), [slice(a, b) for a, b in cuts])
-            pieces = [piece for piece in made if piece is not None]
-            if not pieces or len(pieces) < len(made):
-                return None
-            path = _joined(pieces, self.lanes) if keeps else None
-            numbers = np.concatenate([x[2] for x in pieces], axis=1)
-        if not self.is_judged and numbers[self.count].max() >= MIN_STEPS:
+    def _solution(self, task: Task, made: Made, args: Pytree) -> Solution | None:
+        """The solution of what was made; None if an ordinary call should say more of it."""
+        _, points, stops, begin, end, _, direction, values, _ = task
+        (most, state, path, y), n, log, start = made, self.n, None, None
+        if not self.is_judged and most >= MIN_STEPS:
             self.is_judged = True  # an ordinary call says whether the field is stiff
             return None
-        n, shape, log = self.n, self.shape, None
-        if path is not None and self.events is not None and (log := self.events(path, values, span)) is None:
-            return None
-        t: Any
-        if y is not None:
-            t, result = times.copy(), y.reshape(*shape, *y.shape[1:])  # type: ignore[union-attr]
-        elif shape:
-            t, result = path[:, n].T.reshape(*shape, -1), path[:, :n].transpose(2, 1, 0).reshape(*shape, n, -1)
+        if self.events is not None:
+            steps = path.reshape(n + 2, self.lanes, -1).transpose(2, 0, 1)
+            if (log := self.events(steps, {**values, "direction": direction}, (begin, end))) is None:
+                return None
+        if stops is not None:
+            times = stops[0].copy()
         else:
-            t, result = path[:, n, 0], path[:, :n, 0].T
-        # what the other entries need is copied: points may change
-        start = None if self.ranked is None else points.copy()
-        return solution_of(t, result, END, lambda: self._others(task, args, numbers, path, start, log))
+            times, y = path[n], path[:n].transpose(self.axes) if self.shape else path[:n]
+        if self.ranked is not None:  # what the other entries need is copied: points may change
+            start = points.reshape(self.lanes, n).copy()
+        return solution_of(times, y, END, partial(self._others, task, args, state, path, start, log))
 
-    def _alone(
-        self, numbers: Numbers, points: Array, span: tuple[float, float], values: Mapping[str, Any], total: int,
-        args: Pytree,
-    ) -> Solution | None:  # fmt: skip
-        """The solution of one trajectory with its path, of few numbers; None if the call takes more than one run."""
-        memory: Any = self.memory
-        cells, integers, n, size, stops = memory.cells, memory.integers, self.n, numbers.dt, memory.views["stops"]
-        cells[:], m = memory.fresh, points.data
-        cells[:n] = cells[self.begin : self.begin + n] = m
-        stops[0] = stops[1] = span[1]
-        integers[LAST_STOP] = integers[FIRST_STOP] = integers[BEGIN] = 0
-        size = values["direction"] * size if size is not None else numbers.first_step or numbers.min_step or inf
-        path = memory.path(total or self.rows, n + 2)
-        first = memory.views["path"]
-        first[:n], first[n], memory.floats[ORIGIN], memory.floats[STEP_SIZE] = m, span[0], span[0], size
-        integers[END_STEP], integers[TOTAL] = total or len(path) - 1, total
-        if not total:
-            cells[self.time], cells[self.size] = span[0], size
+    def _alone(self, task: Task, memory: Memory) -> Made | None:
+        """States and path of one trajectory, by few operations; None if the path has no room, or if a step fails."""
+        numbers, points, stops, begin, end, size, _, _, total = task
+        cells, integers, n = memory.cells, memory.integers, self.n
+        path: Any = None
+        cells[:] = memory.fresh
+        self.first[:] = self.start[:] = point = points.data
+        if stops is None:
+            self.stops[0] = self.stops[1] = end
+        else:
+            self._put(stops, memory, end)
+        integers[BEGIN], memory.floats[ORIGIN] = 0, begin
+        if total:
+            integers[END_STEP] = integers[TOTAL] = total
+            memory.floats[STEP_SIZE] = size
+        else:
+            integers[END_STEP], cells[self.time], cells[self.size] = self.rows if self.keeps else self.most, begin, size
+        if self.keeps:
+            path = memory.path(total or self.rows, n + 2)
+            if path is not self.path:
+                self.path, self.columns, self.row = path, path[:, :, 0].T, memory.views["path"]
+            self.row[:n], self.row[n] = point, begin
         self.kernel.run(memory.address)
-        left, count = cells[self.alive], int(cells[self.taken])
-        rows = total if total else integers[BEGIN]
-        good = left > 0 if total else left < 0 and rows == count < numbers.max_steps
-        if not good or (not self.is_judged and count >= MIN_STEPS):
+        left, most = cells[self.alive], total or int(cells[self.taken])
+        if left <= 0 if total else left >= 0 or most >= numbers.max_steps:
             return None
         for i in self.trouble:
             if cells[i] > 0:
                 return None
-        if total:
-            cells[self.taken] = total
-        path, state, log = path[: rows + 1].copy(), cells.tobytes(), None
-        if self.events is not None and (log := self.events(path, values, span)) is None:
+        cells[self.taken] = most
+        if path is not None:
+            rows = total or integers[BEGIN]
+            path = self.columns[:, : rows + 1].copy()
+            if rows > most:  # some rows are not steps
+                path[n + 1, 0] = 1.0
+                path = path[:, path[n + 1] != 0]
+        y = None if stops is None else memory.arrays["out"][: len(stops[0]), :, 0].T.copy()
+        return most, cells.tobytes(), path, y
+
+    def _in_pieces(self, task: Task, memory: Memory | None) -> Made | None:
+        """States and paths of the lanes in pieces, in threads if they are many; None if one of them fails."""
+        stops, total, n = task[2], task[-1], self.n
+        rows = total if self.lockstep or not self.keeps else self.rows
+        y = None if stops is None else np.empty((self.lanes, n, len(stops[0])))
+        if memory is not None:
+            pieces = [self._made(task, slice(0, self.lanes), y, memory)]
+        else:
+            chunk = self._chunk(rows)
+            cuts = pairwise([*range(0, self.lanes, chunk), self.lanes] if chunk else [])
+            pieces = in_threads(lambda lanes: self._made(task, lanes, y), [slice(a, b) for a, b in cuts])
+        made = [piece for piece in pieces if piece is not None]
+        if not made or len(made) < len(pieces):
             return None
-        start = None if self.ranked is None else np.array([points])
-        task: Task = numbers, points, None, span, values, total, None, True
-        t, y = path[:, n, 0], path[:, :n, 0].T
+        state = made[0][0] if len(made) == 1 else np.concatenate([x[0] for x in made], axis=1)
+        most = np.maximum.reduce(state[self.kept.index("count")])
+        if most >= task[0].max_steps:
+            return None
+        path = _joined([x[1] for x in made]).transpose(1, 2, 0).reshape(n + 2, *self.shape, -1) if self.keeps else None
+        return most, state, path, None if y is None else y.reshape(*self.shape, n, -1)
 
-        def others() -> dict[str, object]:
-            return self._others(task, args, np.frombuffer(state, count=self.begin)[:, None], path, start, log)
-
-        return solution_of(t, y, END, others)
-
-    def _made(self, task: Task, lanes: slice, memory: Memory | None = None) -> Piece | None:
-        """Run the kernel for some lanes from begin to end; None if one of them fails."""
-        numbers, points, times, (begin, end), values, total, y, keeps = task
-        if memory is None:  # pieces run in threads
-            points = points[lanes]
-            memory = Memory(self.kernel, len(points), self.constants)
-        count, n, state, integers, cells = len(points), self.n, memory.state, memory.integers, memory.cells
-        width, starts, last = state.shape[1], 0, 0
+    def _made(
+        self, task: Task, lanes: slice, y: Array | None, kept: Memory | None = None
+    ) -> tuple[Array, Array] | None:
+        """Numbers of states and the path of some lanes, whose points at output times go to y; None if one fails."""
+        numbers, points, stops, begin, end, size, _, values, total = task
+        points = points.reshape(self.lanes, self.n)[lanes]
+        memory = Memory(self.kernel, len(points), self.constants) if kept is None else kept  # pieces run in threads
+        count, n, state, integers = len(points), self.n, memory.state, memory.integers
         for row, number in zip(memory.rows, self.kernel.lane_constants, strict=False):
             row[:count] = values[number.name][lanes] if isinstance(number, LaneConstant) else number(points)
-        memory.block[:] = memory.first
+        memory.cells[:] = memory.fresh
         memory.points[:] = points
-        if times is not None:
-            starts, last = int(times[0] == begin), len(times) - int(times[-1] == end)
-            memory.room("out", last + 2, n, width)[:starts] = state[:n]
-            memory.room("stops", last + 2)[:last] = times[:last]
-        memory.arrays["stops"][last : last + 2] = end
-        integers[LAST_STOP], integers[FIRST_STOP], memory.floats[ORIGIN] = last, starts, begin
-        size: Any = numbers.dt
-        if size is None:
-            size = numbers.first_step or numbers.min_step or inf
+        if not total and isinstance(size, float):
+            state[self.time], state[self.size] = begin, size
+        elif not total:
+            state[self.time], state[self.size, :count] = begin, size.reshape(-1)[lanes]
+        if count < state.shape[1]:
+            memory.block[:, :, count:] = memory.block[:, :, :1]
+        memory.floats[ORIGIN] = begin
+        if stops is not None:
+            self._put(stops, memory, end)
         else:
-            size = values["direction"] * (size if type(size) is float else size.reshape(-1)[lanes])
-        if self.lockstep:
+            memory.arrays["stops"][:2] = end
+        if total:
+            path: Any = memory.path(total, n + 2)[: total + 1, :, :count] if self.keeps else state
+            if self.keeps:
+                path[0, :n], path[0, n] = state[:n, :count], begin
             integers[END_STEP] = integers[TOTAL] = total
             memory.floats[STEP_SIZE] = size
-        elif width == 1 and not starts:
-            cells[self.time], cells[self.size] = begin, size
-        else:
-            for name, x in (("t", begin), ("h", size), ("stop", starts), ("kept", starts)):
-                if name in self.place:
-                    state[self.place[name], :count] = x
-        if count < width:
-            memory.block[:, :, count:] = memory.block[:, :, :1]
-        if not self.lockstep:
-            path = self._to_the_end(memory, count, task)
-        else:
-            path = memory.path(total, n + 2) if keeps else state
-            if keeps:
-                path[0, :n], path[0, n] = state[:n], begin
-                path = path[: total + 1] if count == width else path[: total + 1, :, :count]
             self.kernel.run(memory.address)
-            alive = cells[self.alive] if width == 1 else state[self.alive, :count].min()
-            if alive <= 0:
+            if state[self.alive, :count].min() <= 0:
                 return None
-            if cells[self.taken * width] != total:  # which is not counted
-                state[self.taken] = total
-        if path is None:
+            state[self.taken], path = total, path if kept is None else path.copy()
+        else:
+            path = self._to_the_end(memory, count, begin, numbers.max_steps)
+        if path is None or (self.trouble and (state[self.trouble, :count] > 0).any()):
             return None
-        for i in self.trouble:
-            if (cells[i] if width == 1 else state[i, :count].max()) > 0:
-                return None
         if y is not None:
             y[lanes] = memory.arrays["out"][: y.shape[2], :, :count].transpose(2, 1, 0)
-        if memory is self.memory:
-            return lanes, path.copy() if keeps else None, state.copy()
-        return lanes, path if keeps else None, state[self.kept_rows, :count]
+        return state[self.kept_rows, :count], path
 
-    def _chunk(self, rows: int, *, keeps: bool) -> int:
+    def _put(self, stops: tuple[Array, int, int], memory: Memory, end: float) -> None:
+        """Give a kernel output times and the end, and take the points at the begin."""
+        times, first, last = stops
+        out, _ = memory.room("out", last + 2, *memory.start.shape), memory.room("stops", last + 2)
+        places = memory.views["stops"]
+        places[:last] = times.data[:last]
+        places[last] = places[last + 1] = end
+        memory.integers[LAST_STOP], memory.integers[FIRST_STOP] = last, first
+        if first:
+            out[0] = memory.start
+            for name in ("stop", "kept"):
+                if name in self.place:
+                    memory.state[self.place[name]] = 1
+
+    def _chunk(self, rows: int) -> int:
         """Number of lanes that are run at once, whole blocks; 0 if even one block is too long for one call."""
         width, most = self.kernel.width, min(self.lanes, CHUNK)
         if self.lanes * max(rows, 1) >= LANE_STEPS_FOR_THREADS:
             most = min(most, max(width, -(-self.lanes // cores())))
         most = min(most, OPERATIONS_PER_CALL // (self.work * max(rows, 1)))
-        if keeps:
+        if self.keeps:
             most = min(most, PATH_BYTES_PER_CALL // (8 * (self.n + 2) * rows))
         return padded(most, width) if most >= min(width, self.lanes) else 0
 
     def _take(
-        self, numbers: Numbers, begin: float, end: float, rest: float, found: Sequence[Leaf] | None
+        self, numbers: Numbers, begin: float, end: float, rest: float, direction: float, found: Sequence[Leaf] | None
     ) -> Mapping[str, Any]:
-        """Take over the numbers of a call as constants of the run; returns the direction and those of args by name."""
+        """Take over the numbers of a call as constants of the run; returns those of args by name."""
         dt, rtol, atol, most, least, _, _, looks, *_ = numbers
-        tiny = rest if dt is not None or rest > least else least
+        tiny, latest = rest if dt is not None or rest > least else least, abs(begin) + abs(end) + 1.0  # see bounds_of
         gap = (gap_of(looks, end - begin, self.problem.field) if "gap" in self.slot else None) or 0.0
-        direction, latest = 1.0 if end >= begin else -1.0, abs(begin) + abs(end) + 1.0  # see bounds_of
-        known: Any = 1.0, direction, rest, end, rtol, atol, most, tiny, gap, latest
-        slots = self.slots
+        known: Any = rest, end, direction, tiny, latest, rtol, atol, most, gap
         for place, i in self.own:
-            slots[place] = known[i]
-        values: dict[str, Any] = {"direction": direction}
+            self.slots[place] = known[i]
         if found is None:
-            return values
+            return NO_VALUES
+        values: dict[str, Any] = {}
         for (name, slot), number in zip(self.names, numbers_in(found, len(self.shape)), strict=True):
             values[name] = number
             if slot is not None:
-                slots[slot] = number
+                self.slots[slot] = number
         return values
 
-    def _to_the_end(self, memory: Memory, count: int, task: Task) -> Array | None:
+    def _to_the_end(self, memory: Memory, count: int, begin: float, most: float) -> Array | None:
         """Run the kernel until all lanes are at the end, by steps of their own sizes; the path."""
-        parts, size, n, state, integers = list[Array](), self.n + 1, self.n, memory.state, memory.integers
-        keeps, most_steps, one = task[7], task[0].max_steps, state.shape[1] == 1
+        parts, n, state, integers, left = list[Array](), self.n, memory.state, memory.integers, 1.0
         integers[END_STEP] = max(1, OPERATIONS_PER_CALL // (self.work * count))
-        while True:
-            if keeps:
+        while left > 0:
+            if self.keeps:
                 path = memory.path(self.rows, n + 2)
-                path[0, :n], path[0, n], integers[END_STEP] = state[:n], task[3][0], len(path) - 1
-                if not one:
-                    path[1:, size] = 0.0
+                path[0, :n], path[0, n], path[0, n + 1], path[1:, n + 1] = state[:n], begin, not parts, 0.0
+                integers[END_STEP] = len(path) - 1
             integers[BEGIN] = 0
             self.kernel.run(memory.address)
-            if one:
-                least, most_left, most = abs(left := memory.cells[self.alive]), left, memory.cells[self.taken]
-            else:
-                lanes = state[self.alive, :count]
-                least, most_left, most = np.abs(lanes).min(), lanes.max(), state[self.taken, :count].max()
-            if least == 0 or most >= most_steps:
+            lanes = state[self.alive, :count]
+            left = np.maximum.reduce(lanes)
+            if left >= 0 and (not lanes.all() or state[self.taken, :count].max() >= most):
                 return None
-            if keeps:
-                part = path[: integers[BEGIN] + 1] if one else path
-                if not one or len(part) != most + 1:  # some rows are not steps
-                    part[0, size] = not parts
-                    part = part[part[:, size, 0] != 0 if one else part[:, size, :count].any(axis=-1)]
-                parts.append(part)
-            if most_left < 0:
-                break
-            if keeps:  # the path is full
-                memory.arrays["path"], self.rows = np.zeros(0), 2 * self.rows
-        path = state if not keeps else parts[0] if len(parts) == 1 else np.concatenate(parts)
-        if one or not keeps:
-            return path
-        path = path[..., :count]
-        moved = path[:, size] != 0
+            if self.keeps:
+                parts.append(path[path[:, n + 1, :count].any(axis=-1), :, :count])  # rows with steps
+                self.rows *= 1 + (left > 0)  # the path is full
+        if not self.keeps:
+            return state
+        path = parts[0] if len(parts) == 1 else np.concatenate(parts)
+        moved = path[:, n + 1] != 0
         if moved.all():
             return path
         order = np.argsort(~moved, axis=0, kind="stable")[: int(moved.sum(axis=0).max(initial=0))]
@@ -481,31 +480,36 @@ class Plan:
         return np.where(moved[:, None], path, np.nan)
 
     def _others(
-        self, task: Task, args: Pytree, numbers: Array, path: Array | None, start: Array | None,
-        log: EventLog | None,
-    ) -> dict[str, object]:  # fmt: skip
+        self, task: Task, args: Pytree, state: Array | bytes, path: Array, start: Array | None, log: EventLog | None
+    ) -> dict[str, object]:
         """The other entries of a solution, which are made when one of them is asked for."""
-        p, shape, graph, given = self.problem, self.shape, self.kernel.graph, task[0]
+        p, shape, graph, (given, _, stops, *span, _, direction, _, _) = (
+            self.problem,
+            self.shape,
+            self.kernel.graph,
+            task,
+        )
         bound = p.field if args is None else p.field.with_args(args)
-        p = replace(p, bound=bound, span=(np.float64(task[3][0]), np.float64(task[3][1])))
-        row = {name: x[: self.lanes] for name, x in zip(self.kept, numbers, strict=True)}
+        p = replace(p, bound=bound, span=(np.float64(span[0]), np.float64(span[1])))
+        rows = np.frombuffer(state, count=len(self.kept))[:, None] if isinstance(state, bytes) else state
+        row = dict(zip(self.kept, rows, strict=True))
         statistics = StepStatistics(self.step, shape)
         if self.ranked is not None and start is not None:
             note_ranks(statistics, p, self.step, start[self.ranked], self.ranked, shape)
-        statistics.add_compiled(np.arange(self.lanes), records_of(self.kernel, row), task[3])
+        statistics.add_compiled(np.arange(self.lanes), records_of(self.kernel, row), (span[0], span[1]))
         calls = calls_of(self.kernel, row, row.get("tries", row["count"]))
         calls = calls + int(graph.first is not None and given.dt is None and not (given.first_step or given.min_step))
         steps = row["count"].astype(int)
         check = replace(p.options, looks=given.looks).check(p.field.time_dependent)
         how: dict[str, Any] = {"check": check, "engine": self.kernel.engine}
-        report = statistics.report(p.action, p.options.clock, p.orbit_dimension, task[4]["direction"], **how)
+        report = statistics.report(p.action, p.options.clock, p.orbit_dimension, direction, **how)
 
         def dense() -> DenseSolution:
-            steps = path.swapaxes(1, 2).reshape(-1, *shape, self.n + 2)  # type: ignore[union-attr]
-            times, points, sizes = steps[..., self.n], steps[..., : self.n], np.nan_to_num(steps[1:, ..., self.n + 1])
+            steps = path.swapaxes(0, -1)
+            ends, points, sizes = steps[..., self.n], steps[..., : self.n], np.nan_to_num(steps[1:, ..., self.n + 1])
             psi = Generator(bound, p.orbit_dimension, points[0])
             step = p.step.prepare(p.action, psi, psi.start, np.full(shape, p.span[0]))  # type: ignore[arg-type]
-            return DenseSolution(p.action, psi, step, times, points, sizes, nominal=p.options.nominal)
+            return DenseSolution(p.action, psi, step, ends, points, sizes, nominal=p.options.nominal)
 
         t_events, y_events = (None, None) if log is None else log.lists()
         return {
@@ -513,14 +517,16 @@ class Plan:
             "nfev": self.prepared + int(calls.max()), "message": MESSAGES[END],
             "n_steps": steps.reshape(shape) if shape else int(steps[0]), "report": report,
             "statuses": np.full(shape, END) if shape else END, "njev": 0, "nlu": 0,
-            "_steps": dense if task[2] is None or given.dense else None,
+            "_steps": dense if stops is None or given.dense else None,
         }  # fmt: skip
 
 
-def _joined(pieces: Sequence[Piece], lanes: int) -> Array:
-    """The path of all lanes, filled up with NaN."""
-    paths = [(here, path) for here, path, _ in pieces if path is not None]
-    whole = np.full((max(len(path) for _, path in paths), paths[0][1].shape[1], lanes), np.nan)
-    for here, path in paths:
-        whole[: len(path), :, here] = path
+def _joined(paths: Sequence[Array]) -> Array:
+    """The paths of pieces as one, filled up with NaN."""
+    if len(paths) == 1:
+        return paths[0]
+    whole, first = np.full((max(map(len, paths)), paths[0].shape[1], sum(x.shape[2] for x in paths)), np.nan), 0
+    for path in paths:
+        whole[: len(path), :, first : first + path.shape[2]] = path
+        first += path.shape[2]
     return whole

@@ -216,13 +216,13 @@ class Propagator:
         if not isinstance(field, GeneratorField):
             raise InputError(f"expected a GeneratorField, got {displayed(field)}: call liehom.GeneratorField(rho, psi)")
         self.field: GeneratorField = field
-        self.args: Pytree = args
+        self.args: Pytree = field.args if args is None else args
         self.step: Step | None = None if step is None else as_step(step)
         self.engine: Engine = engine_of(engine)
         # an engine is for one step: the default steps for several tolerances have one each
         self._new_engine: str | None = engine if isinstance(engine, str) else None
         self._engines: dict[Step, Engine] = {}
-        self._defaults: dict[Hashable, Step] = {}
+        self._choices: dict[Hashable, tuple[Step, Engine]] = {}
         self._without_series: Step | None = None  # the default step if psi turns out to have no Taylor series
         self._nominal = checked_clock(clock)
         self._action = _action(field.representation, exponential)
@@ -231,9 +231,12 @@ class Propagator:
         self, t_span: Iterable[float] | Span, y0: npt.ArrayLike, *, args: Pytree = None, **options: Unpack[CallOptions]
     ) -> Solution:
         """The trajectories from y0, a `Solution`; parameters and options are those of `integrate`."""
-        engine = self.engine if self.step is not None else self._engine_for(self._step_for(**options))
+        engine = self.engine
+        if self.step is None:
+            _, engine = self._choice(options.get("dt"), options.get("rtol", RTOL), options.get("atol", ATOL))
         again: Callable[..., Solution | None] | None = getattr(engine, "again", None)
-        solution = None if again is None else again(t_span, y0, options, self._args_for(args))
+        args = self.args if args is None else args
+        solution = None if again is None else again(t_span, y0, options, args)
         if solution is None:
             problem = self.problem(t_span, y0, args=args, **options)
             return warned(self.solve(problem), problem, stacklevel=3)
@@ -287,26 +290,24 @@ class Propagator:
             raise InputError("the group fixes an initial point, so that its trajectory is constant: leave it out")
         return Sensitivity(problem, warned(self.solve(problem), problem, stacklevel=3))
 
-    def _args_for(self, args: Pytree) -> Pytree:
-        """The args of a call: its own, or those of the propagator, or those of the field."""
-        return args if args is not None else self.args if self.args is not None else self.field.args
-
-    def _step_for(
-        self, *, dt: npt.ArrayLike | None = None, rtol: float = RTOL, atol: npt.ArrayLike = ATOL, **_: object
-    ) -> Step:
-        """The step of a call with these options."""
+    def _choice(self, dt: npt.ArrayLike | None, rtol: float, atol: npt.ArrayLike) -> tuple[Step, Engine]:
+        """The step of a call with these options, and its engine."""
         if self.step is not None:
-            return self.step
+            return self.step, self.engine
+        wanted = dt is None, rtol, atol
+        is_plain = isinstance(rtol, float) and isinstance(atol, float)
+        if is_plain and wanted in self._choices:
+            return self._choices[wanted]
         if self._without_series is not None:
-            return self._without_series
-        if self._new_engine is None and self._engines:
-            return next(iter(self._engines))
-        wanted: tuple[Any, ...] = (dt is None, rtol, atol)
-        if not isinstance(wanted[1], float) or not isinstance(wanted[2], float):
-            return default_step(dt, rtol, least_atol(atol, self.field.representation.size))
-        if wanted not in self._defaults:
-            self._defaults[wanted] = default_step(dt, rtol, least_atol(atol, self.field.representation.size))
-        return self._defaults[wanted]
+            step = self._without_series
+        elif self._new_engine is None and self._engines:
+            step = next(iter(self._engines))
+        else:
+            step = default_step(dt, rtol, least_atol(atol, self.field.representation.size))
+        choice = step, self._engine_for(step)
+        if is_plain:
+            self._choices[wanted] = choice
+        return choice
 
     def _engine_for(self, step: Step) -> Engine:
         """The engine for a step."""
@@ -341,11 +342,12 @@ class Propagator:
     ) -> Problem:
         """The `Problem` of a call, with all arguments checked."""
         check_option_names(unknown)
-        step = self._step_for(dt=dt, rtol=rtol, atol=atol)
+        step, _ = self._choice(dt, rtol, atol)
         timed = self.engine.name == "jax" and traces_times(t_span, (dt, t_eval))
         start, orbit_dimension, span, action, bound, args = self._started(t_span, y0, args, step, timed=timed)
         if self.step is None and not (timed or is_jax(start) or has_series(bound, np.asarray(start), float(span[0]))):
             step = self._without_series = as_step("dop853")
+            self._choices.clear()
         least = positive("min_step", min_step, zero=True)
         if timed:
             sizes, times = jax_times(dt, t_eval, start)
@@ -379,7 +381,7 @@ class Propagator:
         self, t_span: Iterable[float] | Span, y0: npt.ArrayLike, args: Pytree, step: Step, *, timed: bool
     ) -> tuple[Values, int | IntegerArray, Span, Action, GeneratorField, Pytree]:
         """Start, orbit dimensions, span, action, field with args, and args, checked; `timed` if JAX traces times."""
-        args = self._args_for(args)
+        args = self.args if args is None else args
         rho, action = self.field.representation, self._action
         on_jax = self.engine.name == "jax" and (is_jax(y0) or has_jax(args) or timed)
         if on_jax:

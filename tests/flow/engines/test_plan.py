@@ -2,6 +2,7 @@
 
 import pickle
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import numpy as np
@@ -301,6 +302,32 @@ def test_calls_of_one_form_are_those_of_a_fresh_propagator(
         assert (engine.solved, len(counts)) == (1, traced)
         assert_same(sol, propagator(field, step)[0](span, y0, **{**options, **more}))
         counts[traced:] = []
+
+
+@pytest.mark.parametrize("more", [{}, {"t_eval": [0.0, 0.55, 1.0]}, {"t_eval": [0.55], "dense_output": True}], ids=str)
+def test_one_trajectory_with_rejected_steps_takes_the_short_way(
+    more: dict[str, Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse(*_: Any) -> None:
+        raise AssertionError
+
+    options = {"rtol": 1e-9, "first_step": 0.9, **more}
+    made, fresh = (propagator(KICKED, lh.Taylor(8))[0] for _ in range(2))
+    made((0.0, 1.0), START, **options)
+    monkeypatch.setattr(plan.Plan, "_in_pieces", refuse)
+    assert_same(made((0.0, 1.0), START, **options), fresh((0.0, 1.0), START, **options))
+
+
+@pytest.mark.parametrize("count", [1, 20])
+def test_threads_may_share_a_propagator(count: int) -> None:
+    made, _ = propagator(step=lh.Taylor(8))
+    starts = sphere(8 * count).reshape(8, count, 3)[:, slice(None) if count > 1 else 0]
+    made((0.0, 40.0), starts[0], dt=0.1)
+    wanted = [made((0.0, 40.0), y0, dt=0.1).y for y0 in starts]
+    with ThreadPoolExecutor(4) as pool:
+        for _ in range(5):
+            for y, expected in zip(pool.map(lambda y0: made((0.0, 40.0), y0, dt=0.1).y, starts), wanted, strict=True):
+                np.testing.assert_array_equal(y, expected)
 
 
 @pytest.mark.parametrize(
