@@ -43,7 +43,7 @@ from liehom.flow.series.arrays import is_jax, is_traced, namespace
 from liehom.flow.steps.conserving import Conserving
 from liehom.flow.tracing.graph import needed
 from liehom.flow.tracing.loop import StepGraph
-from liehom.flow.tracing.sweeps import JaxArray
+from liehom.flow.tracing.sweeps import JaxArray, jax, jnp
 
 # The choice between the two forms of a step on JAX arrays, a scalar graph or array code. XLA compiles a graph of n
 # operations in a time that grows like n^2, on one core about 0.2 s for 600, 2 s for 1600 and 20 s for 6000. Array code
@@ -88,9 +88,7 @@ def representative_points(start: JaxArray, size: int) -> np.ndarray[Any, np.dtyp
 
 def _closes_over_jax(source: object) -> bool:
     """Whether a function uses JAX arrays of its surroundings; a graph would have their numbers in its operations."""
-    from jax import tree_util
-
-    return any(is_jax(x) for part in parts_of(source) for x in tree_util.tree_leaves(part))
+    return any(is_jax(x) for part in parts_of(source) for x in jax.tree.leaves(part))
 
 
 def _blank(args: Pytree) -> Pytree:
@@ -128,9 +126,6 @@ class Found(NamedTuple):
 
 def solution_of(problem: Problem, dimension: int, times: JaxArray, results: Found) -> Solution:
     """The solution, with JAX arrays for t, y and, for an ensemble or if JAX traces the call, `statuses`."""
-    import jax
-    from jax import numpy as jnp
-
     y: Any = jnp.moveaxis(results.points, 0, -1)
     report = _report(problem, dimension)
     code, lost, count, t = (jax.lax.stop_gradient(x) for x in (results.code, results.lost, results.count, results.t))
@@ -221,8 +216,6 @@ class JaxEngine:
 
 def _lattice_of_numpy(engine: JaxEngine, problem: Problem) -> Solution:
     """The solution for lattices given as numpy arrays, by array code for whole lattices; all steps without t_eval."""
-    from jax import numpy as jnp
-
     o, start = problem.options, np.asarray(problem.start)
     times: Any = o.t_eval
     if times is None:
@@ -247,8 +240,6 @@ class _Call:
     """One call on JAX arrays."""
 
     def __init__(self, engine: JaxEngine, problem: Problem) -> None:
-        import jax
-
         o, start = problem.options, problem.start
         if o.events is not None or o.dense_output or o.checkpoint is not None:
             raise InputError(
@@ -303,8 +294,6 @@ class _Call:
             results, sizes = self._adapted(leaves, recorded)
             if not traced:
                 return [*results, sizes]
-            import jax
-
             leaves = *leaves[:4], jax.lax.stop_gradient(sizes), *leaves[9:]
             return [self._looped(leaves, recorded + 1, table=True)[0], *results[1:]]
 
@@ -312,8 +301,6 @@ class _Call:
 
     def _given(self, table: JaxArray | None) -> Program:
         """The trace of the loop with given sizes: those of a table, or one for all steps."""
-        import jax
-
         if table is None:
             arguments, iterations = self.leaves, _rounded(self._nominal_number())
         else:
@@ -353,8 +340,6 @@ class _Call:
 
     # -- loops -------------------------------------------------------------------------------------------
     def _bound(self, start: JaxArray, args: Sequence[JaxArray]) -> tuple[GeneratorField, At]:
-        import jax
-
         field = self.problem.field
         if self.problem.args is not None:
             field = field.with_args(jax.tree.unflatten(self.args, list(args)))
@@ -362,8 +347,6 @@ class _Call:
 
     def _looped(self, leaves: Sequence[JaxArray], iterations: int, *, table: bool) -> list[JaxArray]:
         """Results of the loop with given sizes, for start, span, times, sizes and the leaves of args."""
-        from jax import numpy as jnp
-
         start, t0, t1, times, sizes, *args = leaves
         lead = start.shape[:-1]
         direction = jnp.where(t1 >= t0, 1.0, -1.0).astype(start.dtype)
@@ -383,9 +366,6 @@ class _Call:
 
     def _adapted(self, leaves: Sequence[JaxArray], recorded: int) -> tuple[list[JaxArray], JaxArray]:
         """Results of the loop with adaptive sizes, and these sizes (recorded, ...); no derivative passes through."""
-        import jax
-        from jax import numpy as jnp
-
         start, t0, t1, times, rtol, atol, max_step, first, most, *args = map(jax.lax.stop_gradient, leaves)
         direction: Any = jnp.where(t1 >= t0, 1.0, -1.0).astype(start.dtype)
         tiny: Any = 8 * float(np.finfo(start.dtype).eps) * jnp.maximum(jnp.abs(t0), jnp.abs(t1))
@@ -403,8 +383,6 @@ class _Call:
 
     def _differentiated(self) -> Leaves:
         """Results of a call that JAX differentiates in reverse: first the numbers, then, if wanted, the derivative."""
-        import jax
-
         values, table = self._forward_and_sizes()
         program = self._given(table)
         arguments = self.leaves if table is None else [*self.leaves[:4], table, *self.leaves[8:]]
@@ -452,8 +430,6 @@ def _array(x: JaxArray, dtype: DTypeLike | None = None) -> JaxArray:
 
 def _is_nested() -> bool:
     """Whether JAX traces all operations, as under jax.jit."""
-    from jax import numpy as jnp
-
     return is_traced(jnp.zeros(()))
 
 
@@ -464,15 +440,11 @@ def _is_linear(x: JaxArray) -> bool:
 def _known(x: JaxArray) -> JaxArray:
     """The numbers of an array, also while JAX differentiates it; None if they are not known."""
     if is_traced(x):
-        import jax
-
         x = jax.lax.stop_gradient(x)
     return None if is_traced(x) else np.asarray(x)
 
 
 def _concrete(values: Leaves) -> Leaves:
-    import jax
-
     return [jax.lax.stop_gradient(x) if is_traced(x) else x for x in values]
 
 
@@ -484,15 +456,11 @@ def _rounded(number: int) -> int:
 
 def _register_with_jax() -> None:
     """Make `PerTrajectory` a container for JAX, so that jax.grad, jax.jit and jax.vmap look into it."""
-    try:
-        import jax
-    except ImportError:
-        return  # the first run says what is missing
 
     def made(_: None, inside: tuple[Any, ...]) -> PerTrajectory:
         slices = object.__new__(PerTrajectory)  # JAX puts placeholders into containers
         (slices.value,) = inside
         return slices
 
-    with suppress(ValueError):  # it is registered already
+    with suppress(ValueError, ImportError):  # it is registered already, or the first run says what is missing
         jax.tree_util.register_pytree_node(PerTrajectory, lambda given: ((given.value,), None), made)

@@ -6,6 +6,7 @@ import hashlib
 from collections.abc import Sequence
 from functools import cache
 from importlib import import_module
+from importlib.util import find_spec
 from typing import Any, ClassVar, final
 
 import numpy as np
@@ -16,7 +17,7 @@ from liehom.flow.tracing.graph import TrajectoryConstant, needed
 from liehom.flow.tracing.loop import StepGraph
 from liehom.flow.tracing.machine import Kernel
 from liehom.flow.tracing.run_text import ALIVE, DONE, FAILED, Constant
-from liehom.flow.tracing.sweeps import evaluate_with_jax
+from liehom.flow.tracing.sweeps import evaluate_with_jax, jax, jnp, lax
 
 MAX_STORED_STEPS = 256
 """Steps are stored in blocks of powers of 2, at most this one, so that few functions are compiled."""
@@ -43,10 +44,8 @@ class JaxKernel(Kernel):
     tracing: ClassVar[dict[str, Any]] = {"branching": False, "unrolled": 4000}
 
     def _build(self, constants: Sequence[Constant]) -> None:
-        try:
-            import jax
-        except ImportError:
-            raise TraceError('engine="jax" needs JAX: pip install jax') from None
+        if find_spec("jax") is None:
+            raise TraceError('engine="jax" needs JAX: pip install jax')
         self._constants: Any = constants
         key = _fingerprint(self.graph)
         if key not in _JITTED:
@@ -84,9 +83,6 @@ class JaxKernel(Kernel):
 
     def _loop(self, state: Any, fixed: Any, steps: Any, stored: int) -> Any:
         """Number of steps, state, points at stops and rows of the path, after steps of the lanes that do not wait."""
-        import jax.numpy as jnp
-        from jax import lax
-
         n, lanes = self.graph.size, state.shape[1]
         s = dict(zip(self.names, state, strict=True))
         if self.graph.first is not None:
@@ -109,8 +105,6 @@ class JaxKernel(Kernel):
 
     def _step(self, s: Any, fixed: Any) -> Any:
         """The state after one step, the point after it or at the stop, and the size, 0 for lanes that do not move."""
-        import jax.numpy as jnp
-
         given, stops, last, origin = fixed
         graph, n, sizes, time, h = self.graph, self.graph.size, self.graph.sizes, s["t"], s["h"]
         stop_time = stops[s["stop"].astype(int)]
@@ -152,8 +146,6 @@ def options_of(how: str) -> dict[str, Any]:
     the CPU, fusion emitters compute a number again for each use (without them dop853 takes 1000 times fewer
     operations); for a "long" function LLVM does not optimize (it compiles 3 times faster and runs 1.7 times longer).
     """
-    import jax
-
     options: dict[str, Any] = {"xla_cpu_use_fusion_emitters": False}
     if how == "long":
         options["xla_backend_optimization_level"] = 0
@@ -168,8 +160,4 @@ def options_of(how: str) -> dict[str, Any]:
 
 def enabled_x64() -> Any:
     """A context in which JAX computes in float64."""
-    import jax
-
-    if hasattr(jax, "enable_x64"):
-        return jax.enable_x64(True)
-    return import_module("jax.experimental").enable_x64()
+    return jax.enable_x64(True) if hasattr(jax, "enable_x64") else import_module("jax.experimental").enable_x64()

@@ -30,7 +30,7 @@ from liehom.flow.run.control import (
 from liehom.flow.run.options import CLOCK, END, IMPLICIT, NOT_FINITE, TOO_MANY, TOO_SMALL
 from liehom.flow.steps.step import Generator, LocalStep, Step
 from liehom.flow.tracing.loop import StepGraph
-from liehom.flow.tracing.sweeps import JaxArray, evaluate_with_jax
+from liehom.flow.tracing.sweeps import JaxArray, evaluate_with_jax, jax, jnp, lax
 
 # A step at one point on JAX arrays, in two forms that give the same numbers to round-off.
 # * "arrays": the step's own code runs on JAX arrays of shape (..., N). Its operations are as many as those of the numpy
@@ -64,16 +64,12 @@ class LocalOnJax(NamedTuple):
 
     def runs(self, s: JaxArray) -> JaxArray:
         """Whether tau increases at an admissible rate over a step of size s, as in `liehom.flow.run.control`."""
-        import jax.numpy as jnp
-
         if not self.clock:
             return jnp.ones(jnp.shape(s), dtype=bool)
         return is_admissible(self.clock, s)
 
     def size_for(self, time: JaxArray) -> tuple[JaxArray, JaxArray]:
         """The size s with tau(s) = time, by Newton's method, and whether it converged."""
-        import jax.numpy as jnp
-
         if not self.clock:
             return time, jnp.ones(jnp.shape(time), dtype=bool)
         s: Any = time
@@ -112,8 +108,6 @@ class ArrayStep:
 
 
 def _moved(local: LocalStep, m: JaxArray, t: JaxArray, s: JaxArray) -> Moved:
-    import jax.numpy as jnp
-
     moved: Any = local.point(s[..., None])
     point = jnp.broadcast_to(moved, m.shape).astype(m.dtype)
     zero = jnp.zeros(t.shape, t.dtype)
@@ -134,8 +128,6 @@ class GraphStep:
 
     def at(self, field: GeneratorField, m: JaxArray, t: JaxArray, start: JaxArray) -> LocalOnJax:
         """The step at the points m (..., N) and times t (...,); the field is that of the graph, with other args."""
-        import jax.numpy as jnp
-
         graph = self.graph
         inputs = {**dict(enumerate(jnp.moveaxis(m, -1, 0))), graph.size: t}
         known = arg_values(field.args, m.ndim - 1)
@@ -148,8 +140,6 @@ class GraphStep:
         return LocalOnJax(partial(self._moved, inputs, m, t), clock)
 
     def _moved(self, inputs: dict[int, JaxArray], m: JaxArray, t: JaxArray, s: JaxArray) -> Moved:
-        import jax.numpy as jnp
-
         graph = self.graph
         numbers = [graph.summed[name] for name in ("failed", "near") if name in graph.summed]
         solved = [] if graph.solved is None else [graph.solved]
@@ -164,8 +154,6 @@ class GraphStep:
 
 
 def _code(point: JaxArray) -> JaxArray:
-    import jax.numpy as jnp
-
     return jnp.where(jnp.all(jnp.isfinite(point), axis=-1), np.int32(END), np.int32(NOT_FINITE))
 
 
@@ -196,8 +184,6 @@ class Program(NamedTuple):
     @classmethod
     def of(cls, function: Callable[..., Sequence[JaxArray]], arguments: Leaves) -> Program:
         """The trace of a function of arrays that returns a sequence of arrays."""
-        import jax
-
         try:
             closed = jax.make_jaxpr(function)(*arguments)
         except LiehomError:
@@ -211,8 +197,6 @@ class Program(NamedTuple):
 
     def __call__(self, constants: Leaves, arguments: Leaves) -> Leaves:
         """The results; JAX traces through this call."""
-        import jax
-
         return jax.core.eval_jaxpr(self.jaxpr, constants, *arguments)
 
     def compiled(self, how: str = "nested") -> Callable[[Leaves, Leaves], Leaves]:
@@ -223,7 +207,6 @@ class Program(NamedTuple):
         self, differentiable: Sequence[bool], *, nested: bool
     ) -> Callable[[Leaves, Leaves, JaxArray], tuple[Leaves, Leaves]]:
         """The compiled function (constants, arguments, cotangent of the first result) -> cotangents of both."""
-        import jax
 
         def pulled(constants: Leaves, arguments: Leaves, cotangent: JaxArray) -> tuple[Leaves, Leaves]:
             moving = [is_float(c) for c in constants]
@@ -256,8 +239,6 @@ def merged(which: Sequence[bool], some: Leaves, values: Leaves) -> Leaves:
 
 def _shared(digest: str | None, kind: Hashable, function: Compiled, options: dict[str, Any]) -> Compiled:
     """The jitted function of a digest, made if there is none."""
-    import jax
-
     if digest is None:
         alone: Compiled = jax.jit(function, **options)
         return alone
@@ -348,8 +329,6 @@ class State(NamedTuple):
     @classmethod
     def initial(cls, m: JaxArray, t0: JaxArray, direction: JaxArray) -> State:
         """The state at the initial points m (..., N)."""
-        import jax.numpy as jnp
-
         lead = m.shape[:-1]
         zero, none = jnp.zeros(lead, m.dtype), jnp.zeros(lead, np.int32)
         t = jnp.broadcast_to(t0, lead).astype(m.dtype)
@@ -362,8 +341,6 @@ class State(NamedTuple):
 
     def after(self, moved: Moved, t: JaxArray, commits: JaxArray, lands: JaxArray, direction: JaxArray) -> State:
         """The state after a step: `commits` says where it was an ordinary step, `lands` where it was the last one."""
-        import jax.numpy as jnp
-
         took = commits | lands
         lossy = took & ((moved.failed > 0) | (moved.near > 0))
         return self._replace(
@@ -379,14 +356,10 @@ class State(NamedTuple):
 
     def failing(self, where: JaxArray, code: int | JaxArray) -> State:
         """The state in which some trajectories have failed, in a way that is a code of `run.options`."""
-        import jax.numpy as jnp
-
         return self._replace(code=jnp.where(where & self.moving, jnp.asarray(code, np.int32), self.code))
 
     def at_output(self) -> tuple[State, JaxArray]:
         """The state on the way to the next output time, and the points (..., N) at this one, NaN if not reached."""
-        import jax.numpy as jnp
-
         done = self.failing(~self.landed, TOO_MANY)
         points = jnp.where(self.landed[..., None], self.output, jnp.nan)
         return done._replace(landed=jnp.zeros_like(self.landed)), points
@@ -400,8 +373,6 @@ def with_given_sizes(
 
     Of each step only the point before it is stored for the derivative (`jax.checkpoint`); the rest is computed again.
     """
-    import jax
-    from jax import lax, numpy as jnp
 
     def one(state: State, time: JaxArray) -> State:
         local = at(state.m, state.t)
@@ -438,8 +409,6 @@ def with_adaptive_sizes(
     first: JaxArray, most: JaxArray, recorded: int,
 ) -> tuple[JaxArray, State, JaxArray]:  # fmt: skip
     """Points (k, ..., N) at the times, the last state, and the signed sizes (recorded, ...) of the ordinary steps."""
-    from jax import lax, numpy as jnp
-
     lead = m.shape[:-1]
     direction: Any = limits.direction
     stop: Any = limits.end

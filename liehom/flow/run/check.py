@@ -29,6 +29,7 @@ from liehom.flow.series.arrays import coarse, is_jax, namespace
 from liehom.flow.steps.step import LocalStep, squared_length
 from liehom.flow.tracing.array import Traced
 from liehom.flow.tracing.loop import while_loop
+from liehom.flow.tracing.sweeps import jnp, lax
 
 LOOKS = 128  # looks across the span, by default for psi(m, t); for psi(m) there is one at the end of each step
 MAX_WAY = 0.22  # of a point between two looks at psi(m), in units of |m|
@@ -134,13 +135,11 @@ def repeated(body: Callable[..., list[Any]], state: list[Any], limit: int = MAX_
     if isinstance(first, Traced):
         return while_loop(lambda *s: ((new := body(*s)), new[0]), state, first.tape, limit, guarded=True)
     if is_jax(first):
-        from jax import lax, numpy as jnp
-
-        def again(s: list[Any]) -> list[Any]:
-            return [x.astype(y.dtype) for x, y in zip(body(*s), state, strict=True)]
-
-        last: list[Any] = lax.while_loop(lambda s: jnp.any(s[0]), again, state)
-        return last
+        return lax.while_loop(
+            lambda s: jnp.any(s[0]),
+            lambda s: [x.astype(y.dtype) for x, y in zip(body(*s), state, strict=True)],
+            state,
+        )
     for _ in range(limit):
         if not np.any(state[0]):
             break

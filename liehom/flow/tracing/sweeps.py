@@ -11,6 +11,7 @@ from typing import Any, TypeAlias, final
 import numpy as np
 
 from liehom.base.errors import TraceError
+from liehom.base.lazy import Module
 from liehom.base.typing import Array
 from liehom.flow.tracing.array import Traced, entire_function
 from liehom.flow.tracing.graph import COARSE, OPERATORS, Expr, needed
@@ -283,6 +284,9 @@ def exponentials(matrices: Array) -> Array:
 
 JaxArray: TypeAlias = Any
 """A JAX array or tracer, a numpy array or a number."""
+jax: Any = Module("jax")
+jnp: Any = Module("jax.numpy")
+lax: Any = Module("jax.lax")
 
 EXP_SUBSTEPS, JAX_EXP_TERMS = 4, 18
 """Numbers of substeps and of terms in which exp(A) m is summed; enough for |A| <= 4, beyond that the result is NaN."""
@@ -292,14 +296,10 @@ def evaluate_with_jax(
     outputs: Sequence[Expr], inputs: Mapping[int, JaxArray], *, differentiable: bool = False
 ) -> list[JaxArray]:
     """List of the outputs of a graph, computed by jax.numpy."""
-    try:
-        import jax.numpy as jnp
-    except ImportError:
-        raise TraceError('engine="jax" needs JAX: pip install jax') from None
     values: dict[int, Any] = {}
     for x in needed(outputs):
         if not _of_loop(x):
-            values[x.index] = _value(jnp, x, values, inputs, differentiable)
+            values[x.index] = _value(x, values, inputs, differentiable)
     return [_known(x, values) for x in outputs]
 
 
@@ -314,7 +314,7 @@ def _known(x: Expr, values: Mapping[int, JaxArray]) -> Any:
     return x.value if x.constant else values[x.index]
 
 
-def _array(jnp: ModuleType, some: Sequence[Expr], values: Mapping[int, JaxArray]) -> Any:
+def _array(some: Sequence[Expr], values: Mapping[int, JaxArray]) -> Any:
     """Numbers of a graph as one array, along its first axis."""
     if all(x.constant for x in some):
         return np.array([x.value for x in some])
@@ -324,17 +324,17 @@ def _array(jnp: ModuleType, some: Sequence[Expr], values: Mapping[int, JaxArray]
     return jnp.stack(jnp.broadcast_arrays(*[jnp.asarray(_known(x, values), dtype=float) for x in some]))
 
 
-def _entries(jnp: ModuleType, x: Expr, values: Mapping[int, JaxArray]) -> Any:
+def _entries(x: Expr, values: Mapping[int, JaxArray]) -> Any:
     """The results of a "map" or a "table", along the first axis of an array."""
     if x.op == "map":
         name, size = x.value
-        lists = [_array(jnp, x.args[i : i + size], values) for i in range(0, len(x.args), size)]
+        lists = [_array(x.args[i : i + size], values) for i in range(0, len(x.args), size)]
         axes = max(a.ndim for a in lists)
         return applied(jnp, name, [a.reshape(size, *[1] * (axes - a.ndim), *a.shape[1:]) for a in lists])
     table, first = x.value
     places, factors = table.padded()
     some = x.args[:first], x.args[first:]
-    lists = [_array(jnp, part, values) for part, _ in zip(some, places, strict=False)]
+    lists = [_array(part, values) for part, _ in zip(some, places, strict=False)]
     if len(lists) == 1 and bool((places[0] == np.arange(first)).all()):
         return jnp.tensordot(factors, lists[0], 1)
     axes = max(a.ndim for a in lists) - 1
@@ -344,29 +344,25 @@ def _entries(jnp: ModuleType, x: Expr, values: Mapping[int, JaxArray]) -> Any:
     return total.sum(axis=1)
 
 
-def _value(
-    jnp: ModuleType, x: Expr, values: Mapping[int, JaxArray], inputs: Mapping[int, JaxArray], differentiable: bool
-) -> Any:
+def _value(x: Expr, values: Mapping[int, Any], inputs: Mapping[int, Any], differentiable: bool) -> Any:
     if x.constant:
         return x.value
     if x.op == "input":
         return inputs[x.value]
     if x.op in ("map", "table"):
-        return _entries(jnp, x, values)
+        return _entries(x, values)
     if x.op == "loop":
-        return _iterated(jnp, x, values, differentiable)
+        return _iterated(x, values, differentiable)
     args = [_known(a, values) for a in x.args]
     if x.op == "get":
         return args[0][x.value]
     if x.op == "expv":
-        return _exponential(jnp, x.value, args)
+        return _exponential(x.value, args)
     return applied(jnp, x.op, args)
 
 
-def _iterated(jnp: ModuleType, x: Expr, values: Mapping[int, JaxArray], differentiable: bool) -> list[JaxArray]:
+def _iterated(x: Expr, values: Mapping[int, JaxArray], differentiable: bool) -> list[JaxArray]:
     """The values of the variables after a loop."""
-    from jax import lax
-
     loop = x.value
     before = [jnp.asarray(_known(a, values)) for a in x.args]
     shape = jnp.broadcast_shapes(*[a.shape for a in before])
@@ -379,7 +375,7 @@ def _iterated(jnp: ModuleType, x: Expr, values: Mapping[int, JaxArray], differen
         known = dict(values) | {v.index: s for v, s in zip(loop.variables, state, strict=True)}
         for y in loop.inside:
             if not _of_loop(y):
-                known[y.index] = _value(jnp, y, known, {}, differentiable)
+                known[y.index] = _value(y, known, {}, differentiable)
         new = [jnp.broadcast_to(_known(y, known), shape) for y in loop.new]
         return new, jnp.any(_known(loop.again, known))
 
@@ -396,9 +392,7 @@ def _iterated(jnp: ModuleType, x: Expr, values: Mapping[int, JaxArray], differen
     return list(state)
 
 
-def _exponential(jnp: ModuleType, places: tuple[tuple[int, int], ...], args: list[JaxArray]) -> list[JaxArray]:
-    from jax import lax
-
+def _exponential(places: tuple[tuple[int, int], ...], args: list[JaxArray]) -> list[JaxArray]:
     shape = jnp.broadcast_shapes(*[jnp.shape(a) for a in args])
     args = [jnp.broadcast_to(jnp.asarray(a, dtype=float), shape) for a in args]
     entries, m = args[: len(places)], jnp.stack(args[len(places) :])
