@@ -54,9 +54,8 @@ class EventValues:
         self.trial_points: Array = points
         begin = np.full(len(self.trial_lanes), float(run.span[0]))
         self.at_once = [True] * events.count
-        at_once = self.of(self.trial_lanes)
         for i in range(events.count):
-            self.checked(i, at_once, begin, points, self.trial_lanes, len(begin))
+            self.checked(i, begin, points, self.trial_lanes, len(begin))
 
     def of(self, lanes: IntegerArray) -> Events:
         """The event functions of pairs t (p,), y (p, N) of these trajectories."""
@@ -68,19 +67,14 @@ class EventValues:
         ]
         return events
 
-    def checked(self, i: int, events: Events, t: Array, y: Array, lanes: IntegerArray, some: int = 1) -> Array:
+    def checked(self, i: int, t: Array, y: Array, lanes: IntegerArray, some: int = 1) -> Array:
         """g_i at pairs; at the last ones it is compared with the function in the form of the run."""
         if self.at_once[i]:
-            try:
-                values = events.value(i, t, y)
-                there = slice(len(t) - some, None)
+            with suppress(*FAILURES):
+                values, there = self.of(lanes).value(i, t, y), slice(len(t) - some, None)
                 wanted = self._in_turn(i, lanes[there], t[there], y[there])
-                if np.allclose(
-                    values[there], wanted, rtol=RTOL, atol=RTOL * float(np.abs(wanted).max()), equal_nan=True
-                ):
+                if np.allclose(values[there], wanted, RTOL, RTOL * float(np.abs(wanted).max()), equal_nan=True):
                     return values
-            except FAILURES:
-                pass
             self.at_once[i] = False
         return self._in_turn(i, lanes, t, y)
 
@@ -192,30 +186,21 @@ class EventSearch:
         steps = _listed(lanes, before, done)
         if not len(steps.row):
             return done
-        events, count = self.values.of(steps.lane), self.values.events.count
-        starts, ends = [], []
-        now = self.run.state
-        for i in range(count):
-            end = self.values.checked(i, events, steps.after, steps.reached, steps.lane)
-            start = np.concatenate([end[:1], end[:-1]])
-            start[steps.first] = now.event_values[i].reshape(-1)[steps.lane[steps.first]]
-            starts.append(start)
-            ends.append(end)
-        fresh = steps.first & (before[2][steps.column] == 0)
+        events, values = self.values.events, []
+        fresh, last = steps.first & (before[2][steps.column] == 0), np.append(steps.first[1:], True)
         occurrences: list[Occurrence] = []
-        events = self.values.of(steps.lane)
-        for i in range(count):
-            possible = events.crossed(i, starts[i], ends[i]) | self._turns(i, steps, starts[i], ends[i])
-            for p in np.flatnonzero(fresh & events.left(i, starts[i], ends[i])):
+        for i, known in enumerate(self.run.state.event_values):
+            end = self.values.checked(i, steps.after, steps.reached, steps.lane)
+            start, now = np.concatenate([end[:1], end[:-1]]), np.array(known).reshape(-1)
+            start[steps.first] = now[steps.lane[steps.first]]
+            now[steps.lane[last]] = end[last]
+            values.append(now.reshape(self.run.shape))
+            for p in np.flatnonzero(fresh & events.left(i, start, end)):
                 occurrences.append(Occurrence(int(p), 0.0, i, 0.0, steps.t[p], steps.m[p], counted=False))
-            chosen = np.flatnonzero(possible)
+            chosen = np.flatnonzero(events.crossed(i, start, end) | self._turns(i, steps, start, end))
             for k in range(0, len(chosen), STEPS_AT_ONCE):
-                occurrences += self._located(i, steps, chosen[k : k + STEPS_AT_ONCE], starts[i], ends[i])
-        last = np.append(steps.first[1:], True)
-        for i in range(count):
-            new = np.array(now.event_values[i]).reshape(-1)
-            new[steps.lane[last]] = ends[i][last]
-            now.event_values = [new.reshape(self.run.shape) if k == i else g for k, g in enumerate(now.event_values)]
+                occurrences += self._located(i, steps, chosen[k : k + STEPS_AT_ONCE], start, end)
+        self.run.state.event_values = values
         halts = self._recorded(steps, sorted(occurrences, key=lambda x: x[:3]))
         return _truncated(self.run, steps, before[2], halts, done) if halts else done
 
@@ -224,19 +209,15 @@ class EventSearch:
         sign = np.sign(start)
         turns: BooleanArray = np.zeros(len(sign), dtype=bool)
         some = np.flatnonzero(sign * end > 0)
-        leaves = sign[some] * self._slopes(
-            i, some, steps.lane[some], steps.after[some], steps.reached[some], end[some], -1
-        )
-        some = some[leaves > 0]
-        leaves = sign[some] * self._slopes(i, some, steps.lane[some], steps.t[some], steps.m[some], start[some], 1)
-        turns[some[leaves < 0]] = True
+        for t, y, value, inwards in ((steps.after, steps.reached, end, -1), (steps.t, steps.m, start, 1)):
+            slopes = self._slopes(i, steps.lane[some], t[some], y[some], value[some], inwards)
+            some = some[inwards * sign[some] * slopes < 0]
+        turns[some] = True
         return turns
 
-    def _slopes(
-        self, i: int, some: IntegerArray, lanes: IntegerArray, t: Array, y: Array, value: Array, inwards: int
-    ) -> Array:
+    def _slopes(self, i: int, lanes: IntegerArray, t: Array, y: Array, value: Array, inwards: int) -> Array:
         """Derivatives of g_i at places (t, y) of lanes, in the direction of integration (see `Look.slope`)."""
-        if not len(some):
+        if not len(lanes):
             return np.zeros(0)
         field, events = self._field(lanes), self.values.of(lanes)
         if self.psi_at_once:
@@ -433,7 +414,7 @@ class PlannedEvents:
     def _traced(self, tape: Tape) -> tuple[Any, Any, GeneratorField, Events]:
         """Point, time, field and events on a tape."""
         args, field = self.problem.args, self.problem.field
-        known = None if args is None else traced_args(tape, args, self.lead)
+        known = traced_args(tape, args, self.lead)
         m, t = Traced.inputs(tape, 0, self.n), Traced(tape, tape.input(self.n))
         return m, t, field if args is None else field.with_args(known), Events(self.functions, known)
 
@@ -451,16 +432,8 @@ class PlannedEvents:
         ]  # fmt: skip
         return PointCode(tape, self.n, self.n + 1, [*values, *slopes])
 
-    def _in_steps(self, i: int) -> PointCode | None:
-        """Code of the zeros of g_i in a step, from its point, time, size and end, and from values and slopes of g_i at
-        both ends; None if it cannot be compiled.
-        """
-        with suppress(*FAILURES):
-            return self._zeros_in_steps(i)
-        return None
-
-    def _zeros_in_steps(self, i: int) -> PointCode:
-        """The code itself."""
+    def _in_steps(self, i: int) -> PointCode:
+        """Code of the zeros of g_i in a step, from its point, time, size, end, and values and slopes at both ends."""
         p, n, tape = self.problem, self.n, Tape()
         m, t, field, events = self._traced(tape)
         more: list[Any] = [Traced(tape, tape.input(n + k)) for k in range(1, 7)]
@@ -485,12 +458,9 @@ class PlannedEvents:
     def agrees(self, points: Array, times: Array) -> bool:
         """Whether the code has the values of the functions at points (..., N) of the run and times (...,)."""
         wanted = np.array(self.events.values(times, points)).reshape(self.events.count, -1)
-        args = self.problem.args
-        values = {"length": 1.0, "direction": 1.0, **({} if args is None else arg_values(args, self.lead))}
+        values = {"length": 1.0, "direction": 1.0, **arg_values(self.problem.args, self.lead)}
         made = self.at_points([*points.reshape(-1, self.n).T, times.reshape(-1)], values)
-        return bool(
-            np.allclose(made[: self.events.count], wanted, rtol=RTOL, atol=RTOL * np.abs(wanted).max(initial=0))
-        )
+        return np.allclose(made[: self.events.count], wanted, RTOL, RTOL * np.abs(wanted).max(initial=0))
 
     def __call__(self, path: Array, values: Mapping[str, Any], span: tuple[float, float]) -> EventLog | None:
         """The events on paths (j + 1, N + 2, L) of points, times and sizes. None if one may end a run."""
@@ -515,7 +485,9 @@ class PlannedEvents:
             if not len(some[0]):
                 continue
             if i not in self.in_steps:
-                self.in_steps[i] = self._in_steps(i)
+                self.in_steps[i] = None  # of what cannot be compiled
+                with suppress(*FAILURES):
+                    self.in_steps[i] = self._in_steps(i)
             locate, (b, j) = self.in_steps[i], some
             if locate is None:
                 return None

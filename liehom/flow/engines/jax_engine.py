@@ -6,7 +6,7 @@ from collections.abc import Callable, Hashable, Sequence
 from contextlib import nullcontext, suppress
 from dataclasses import replace
 from math import ceil
-from typing import Any, NamedTuple, final
+from typing import Any, TypeAlias, final
 
 import numpy as np
 from numpy.typing import DTypeLike
@@ -25,8 +25,6 @@ from liehom.flow.engines.jax_loops import (
     GraphStep,
     Leaves,
     Program,
-    StepOnJax,
-    bound_step,
     chosen,
     is_float,
     with_adaptive_sizes,
@@ -37,7 +35,7 @@ from liehom.flow.engines.traced_step import args_form, traced_step
 from liehom.flow.run.check import gap_of
 from liehom.flow.run.control import ERROR_TERMS, SLACK, SizeLimits
 from liehom.flow.run.options import END, ORDER_NOT_KEPT, outcome
-from liehom.flow.run.records import Report, loss_of_order
+from liehom.flow.run.records import Report, StepStatistics, loss_of_order
 from liehom.flow.run.solution import Solution
 from liehom.flow.series.arrays import is_jax, is_traced, namespace
 from liehom.flow.steps.conserving import Conserving
@@ -45,14 +43,14 @@ from liehom.flow.tracing.graph import needed
 from liehom.flow.tracing.loop import StepGraph
 from liehom.flow.tracing.sweeps import JaxArray, jax, jnp
 
+StepOnJax: TypeAlias = ArrayStep | GraphStep
+
 # The choice between the two forms of a step on JAX arrays, a scalar graph or array code. XLA compiles a graph of n
 # operations in a time that grows like n^2, on one core about 0.2 s for 600, 2 s for 1600 and 20 s for 6000. Array code
 # of the same steps takes 0.4 s to 1 s. Once compiled, short graphs are 3 to 10 times faster.
 
-MAX_GRAPH_OPERATIONS = 700
-"""Scalar graphs of at most so many operations are compiled as graphs, longer ones as array code."""
-MAX_GRAPH_ARGS = 100
-"""Steps with more numbers in args are compiled as array code: a graph has an operation for each of them."""
+MAX_GRAPH_OPERATIONS = 700  # of scalar graphs that are compiled as graphs, longer ones as array code
+MAX_GRAPH_ARGS = 100  # numbers in args; with more, each of which is an operation, steps are compiled as array code
 
 
 def step_for(problem: Problem, dimension: int, known: dict[Hashable, StepOnJax]) -> StepOnJax:
@@ -63,7 +61,9 @@ def step_for(problem: Problem, dimension: int, known: dict[Hashable, StepOnJax])
     numbers = sum(int(np.size(leaf.value)) for leaf in leaves(unwrapped(args)))
     if o.dt is None or numbers > MAX_GRAPH_ARGS or _closes_over_jax(problem.field.source):
         return array
-    points: Any = representative_points(problem.start, problem.field.representation.size)
+    n, traced = problem.field.representation.size, is_traced(problem.start)
+    start: Any = np.random.default_rng(0).normal(size=(16, n)) if traced else problem.start
+    points = np.asarray(start, dtype=np.float64).reshape(-1, n)
     tight = tight_frame(action, points, dimension) if step.uses_isotropy else None
     form = None if args is None else (lead, args_form(args, lead))
     key = dimension, form, None if tight is None else repr([np.asarray(x).tolist() for x in tight[:4]])
@@ -77,13 +77,6 @@ def step_for(problem: Problem, dimension: int, known: dict[Hashable, StepOnJax])
         except TraceError:
             known[key] = array
     return known[key]
-
-
-def representative_points(start: JaxArray, size: int) -> np.ndarray[Any, np.dtype[np.float64]]:
-    """Points (L, N) on which special properties of orbits are looked for: initial ones, or random if traced."""
-    if is_traced(start):
-        return np.random.default_rng(0).normal(size=(16, size))
-    return np.asarray(start, dtype=np.float64).reshape(-1, size)
 
 
 def _closes_over_jax(source: object) -> bool:
@@ -111,31 +104,20 @@ def _is_short(graph: StepGraph) -> bool:
 # The `Solution` of a call on JAX arrays, with a status for each trajectory as from numpy arrays.
 
 
-@final
-class Found(NamedTuple):
-    """Results of a loop over steps: points (k, ..., N), and arrays (...) as in `State`."""
+def solution_of(problem: Problem, dimension: int, times: JaxArray, results: Leaves) -> Solution:
+    """The solution, with JAX arrays for t, y and, for an ensemble or if JAX traces the call, `statuses`.
 
-    points: JaxArray
-    code: JaxArray
-    count: JaxArray
-    t: JaxArray
-    failed: JaxArray
-    near: JaxArray
-    lost: JaxArray
-
-
-def solution_of(problem: Problem, dimension: int, times: JaxArray, results: Found) -> Solution:
-    """The solution, with JAX arrays for t, y and, for an ensemble or if JAX traces the call, `statuses`."""
-    y: Any = jnp.moveaxis(results.points, 0, -1)
+    `results` are points (k, ..., N) and arrays (...) of a `State`: code, count, t, failed, near, lost.
+    """
     report = _report(problem, dimension)
-    code, lost, count, t = (jax.lax.stop_gradient(x) for x in (results.code, results.lost, results.count, results.t))
+    code, count, t, failed, near, lost = map(jax.lax.stop_gradient, results[1:])
     statuses: Any = jnp.where(code < 0, -1, jnp.where(jnp.isfinite(lost), ORDER_NOT_KEPT, 0))
     status, message = 0, "Traced by JAX: `statuses` is -1 for trajectories that failed; there y is nan."
     if not is_traced(code) and not is_traced(problem.span[0]):
         start, end = (np.asarray(jax.lax.stop_gradient(x)) for x in problem.span)
         direction = 1.0 if end >= start else -1.0
         first: Any = np.where(np.isfinite(lost), lost, np.nan)
-        failed, near = (int(np.sum(np.asarray(jax.lax.stop_gradient(x)))) for x in (results.failed, results.near))
+        failed, near = (int(np.sum(np.asarray(x))) for x in (failed, near))
         reason = loss_of_order(failed, near, report.base_order)
         ended = outcome(np.asarray(code), np.asarray(t), first, direction, problem.step.order, reason)
         status, message = ended.status, ended.message
@@ -144,23 +126,19 @@ def solution_of(problem: Problem, dimension: int, times: JaxArray, results: Foun
             order = report.base_order
             report = replace(report, order=order, failed_steps=failed, near_steps=near, unkept_from=unkept)
         report = replace(report, stopped_at=ended.stopped_at)
-    alone = results.code.ndim == 0 and not is_traced(code)
+    alone = code.ndim == 0 and not is_traced(code)
     return Solution(
-        t=times, y=y, sol=None, t_events=None, y_events=None, nfev=0, status=status, message=message,
-        n_steps=count + (code == END), report=report, statuses=status if alone else statuses,
+        t=times, y=jnp.moveaxis(results[0], 0, -1), sol=None, t_events=None, y_events=None, nfev=0, status=status,
+        message=message, n_steps=count + (code == END), report=report, statuses=status if alone else statuses,
     )  # fmt: skip
 
 
 def _report(problem: Problem, dimension: int) -> Report:
     """The report that repeats the options; the order that is reached is not known while JAX traces."""
-    step = problem.step
-    return Report(
-        step=repr(step), exponential=problem.action.exponential.name, clock=problem.options.clock,
-        base_order=step.base_order, order=step.order, wanted_order=step.order, worst_residual=float("nan"),
-        singular_value=float("nan"), singular_at=None, rank=dimension, orbit_dimension=dimension, failed_steps=0,
-        equilibria=0, inner_product=problem.action.inner_product.name,
-        check=problem.options.check(problem.field.time_dependent), engine="jax",
-    )  # fmt: skip
+    o, record = problem.options, StepStatistics(problem.step, ())
+    check = o.check(problem.field.time_dependent)
+    report = record.report(problem.action, o.clock, dimension, check=check, engine="jax")
+    return replace(report, worst_residual=float("nan"), singular_value=float("nan"), rank=dimension)
 
 
 # The engine "jax": numpy arrays by `Run` with compiled steps, JAX arrays by loops that JAX can transform. A
@@ -171,10 +149,8 @@ def _report(problem: Problem, dimension: int) -> Report:
 # * JAX traces the call (`jax.jit`, `jax.vmap`, `jax.jvp`): the loop with given sizes is part of that trace.
 
 STEPS_PER_NOMINAL_STEP = 1.5  # largest number of steps of a step with a time of its own, in units of the nominal number
-MAX_RECORDED = 1024
-"""Largest number of adaptive steps of a trajectory where JAX traces the call; `max_steps` may lower it."""
-FIRST_RECORDED = 128
-"""Sizes that are recorded at first where the numbers are known; the record is doubled until it is long enough."""
+MAX_RECORDED = 1024  # adaptive steps of a trajectory, at most, where JAX traces the call; `max_steps` may lower it
+FIRST_RECORDED = 128  # sizes that are recorded at first where the numbers are known; doubled until they are enough
 UNBOUNDED = 1_000_000  # a value of `max_steps` from which on it does not bound the length of a loop
 
 
@@ -273,7 +249,7 @@ class _Call:
             results = program.compiled()(program.constants, self._arguments(traced=True))
         else:
             results = self._forward(program)
-        return solution_of(self.problem, self.dimension, self.times, Found(*results[:7]))
+        return solution_of(self.problem, self.dimension, self.times, results[:7])
 
     @staticmethod
     def _is_reverse(values: Leaves) -> bool:
@@ -343,7 +319,7 @@ class _Call:
         field = self.problem.field
         if self.problem.args is not None:
             field = field.with_args(jax.tree.unflatten(self.args, list(args)))
-        return field, bound_step(self.step, field, start)
+        return field, lambda m, t: self.step.at(field, m, t, start)
 
     def _looped(self, leaves: Sequence[JaxArray], iterations: int, *, table: bool) -> list[JaxArray]:
         """Results of the loop with given sizes, for start, span, times, sizes and the leaves of args."""

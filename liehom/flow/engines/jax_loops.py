@@ -6,7 +6,7 @@ import hashlib
 from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import Any, NamedTuple, Protocol, TypeAlias, final
+from typing import Any, NamedTuple, TypeAlias, final
 
 import numpy as np
 
@@ -64,9 +64,7 @@ class LocalOnJax(NamedTuple):
 
     def runs(self, s: JaxArray) -> JaxArray:
         """Whether tau increases at an admissible rate over a step of size s, as in `liehom.flow.run.control`."""
-        if not self.clock:
-            return jnp.ones(jnp.shape(s), dtype=bool)
-        return is_admissible(self.clock, s)
+        return is_admissible(self.clock, s) if self.clock else jnp.ones(jnp.shape(s), dtype=bool)
 
     def size_for(self, time: JaxArray) -> tuple[JaxArray, JaxArray]:
         """The size s with tau(s) = time, by Newton's method, and whether it converged."""
@@ -78,14 +76,6 @@ class LocalOnJax(NamedTuple):
             s = s + (time - self.time(s)) / jnp.clip(slope, MIN_RATE, MAX_RATE)
         bound = NEWTON_ROUNDOFFS * float(np.finfo(s.dtype).eps) * jnp.abs(time)
         return s, jnp.abs(self.time(s) - time) <= bound
-
-
-class StepOnJax(Protocol):
-    """A step as a function of point, time and leaves of args, for the loops of `liehom.flow.engines`."""
-
-    def at(self, field: GeneratorField, m: JaxArray, t: JaxArray, start: JaxArray) -> LocalOnJax:
-        """The step at the points m (..., N) and times t (...,) of trajectories that begin at `start`."""
-        ...
 
 
 @final
@@ -100,7 +90,7 @@ class ArrayStep:
     error_terms: int = 0  # see `Step.at`
 
     def at(self, field: GeneratorField, m: JaxArray, t: JaxArray, start: JaxArray) -> LocalOnJax:
-        """The step at the points m (..., N) and times t (...,)."""
+        """The step at the points m (..., N) and times t (...,) of trajectories that begin at `start`."""
         psi = Generator(field, self.orbit_dimension, start)
         local = self.step.at(self.action, psi, m, t[..., None], error_terms=self.error_terms)
         clock: Any = () if self.nominal else local.clock
@@ -127,9 +117,8 @@ class GraphStep:
     graph: StepGraph
 
     def at(self, field: GeneratorField, m: JaxArray, t: JaxArray, start: JaxArray) -> LocalOnJax:
-        """The step at the points m (..., N) and times t (...,); the field is that of the graph, with other args."""
-        graph = self.graph
-        inputs = {**dict(enumerate(jnp.moveaxis(m, -1, 0))), graph.size: t}
+        """The step as for `ArrayStep`; the field is that of the graph, with other args."""
+        graph, inputs = self.graph, {**dict(enumerate(jnp.moveaxis(m, -1, 0))), self.graph.size: t}
         known = arg_values(field.args, m.ndim - 1)
         for i, function in enumerate(graph.constant_functions):
             name = getattr(function, "name", None)
@@ -162,11 +151,8 @@ def _code(point: JaxArray) -> JaxArray:
 # compiled code, so that functions which differ in such numbers alone share it.
 
 Jaxpr: TypeAlias = Any  # a jaxpr, one of its operations or of their parameters; JAX has no public types for them
-
 Leaves: TypeAlias = list[JaxArray]  # a flat list of JAX arrays
-
 Compiled: TypeAlias = Callable[..., Any]  # a function that jax.jit compiles
-
 MAX_SHARED = 64  # number of compiled functions that engines share
 LONG_EQUATIONS = 150
 """Number of operations from which on XLA compiles gradients without its optimizations by LLVM, which take longest."""
@@ -240,8 +226,7 @@ def merged(which: Sequence[bool], some: Leaves, values: Leaves) -> Leaves:
 def _shared(digest: str | None, kind: Hashable, function: Compiled, options: dict[str, Any]) -> Compiled:
     """The jitted function of a digest, made if there is none."""
     if digest is None:
-        alone: Compiled = jax.jit(function, **options)
-        return alone
+        return jax.jit(function, **options)
     key = digest, kind
     if key not in _SHARED:
         if len(_SHARED) >= MAX_SHARED:
@@ -412,12 +397,11 @@ def with_adaptive_sizes(
     lead = m.shape[:-1]
     direction: Any = limits.direction
     stop: Any = limits.end
-    psi = Generator(field, step.orbit_dimension)
-    lanes, axes = int(np.prod(lead)), len(field.sites)
+    psi, lanes, axes = Generator(field, step.orbit_dimension), int(np.prod(lead)), len(field.sites)
     places = jnp.arange(lanes)
 
-    def one(carried: tuple[State, Any, Any, Any], time: JaxArray) -> tuple[State, Any, Any, Any]:
-        state, proposal, sizes, tries = carried
+    def one(carried: tuple[State, Any, Any], time: JaxArray) -> tuple[State, Any, Any]:
+        state, proposal, sizes = carried
         local = at(state.m, state.t)
         inner: Any = local.local
         guess: Any = first_size(limits, inner, psi, state.m, state.t)
@@ -430,9 +414,8 @@ def with_adaptive_sizes(
         runs = local.runs(h)
         last = jnp.where(runs, direction * (stop - state.t - local.time(h)) <= SLACK * jnp.abs(h), False)
         h = jnp.where(last & solved, to_end, h)
-        accepted: Any
-        proposal_after: Any
-        accepted, proposal_after = judgement(limits, inner, state.m, h[..., None], axes)
+        judged: Any = judgement(limits, inner, state.m, h[..., None], axes)
+        accepted, proposal_after = judged
         after = jnp.where(last, stop, state.t + local.time(h))
         over = direction * (time - after) <= SLACK * jnp.abs(h)
         s, solved = local.size_for(jnp.where(over, time - state.t, h))
@@ -448,19 +431,14 @@ def with_adaptive_sizes(
         proposal = jnp.where(moving & ~(took & over), shrunk, proposal).astype(m.dtype)
         after_step = state.after(moved, after, took & ~over, took & over, direction)
         after_step = after_step.failing(moving & ~certain, TOO_SMALL)
-        return after_step.failing(moving & (after_step.count >= most) & ~over, TOO_MANY), proposal, sizes, tries + 1
+        return after_step.failing(moving & (after_step.count >= most) & ~over, TOO_MANY), proposal, sizes
 
-    def towards(carried: tuple[State, Any, Any, Any], time: JaxArray) -> tuple[Any, JaxArray]:
+    def towards(carried: tuple[State, Any, Any], time: JaxArray) -> tuple[Any, JaxArray]:
         carried = lax.while_loop(lambda c: jnp.any(c[0].moving), lambda c: one(c, time), carried)
         state, points = carried[0].at_output()
         return (state, *carried[1:]), points
 
     proposal = jnp.broadcast_to(first, lead).astype(m.dtype)
-    start = State.initial(m, t0, direction), proposal, jnp.zeros((recorded, lanes), m.dtype), jnp.zeros((), np.int32)
-    (state, _, sizes, _), points = lax.scan(towards, start, times)
+    start = State.initial(m, t0, direction), proposal, jnp.zeros((recorded, lanes), m.dtype)
+    (state, _, sizes), points = lax.scan(towards, start, times)
     return points, state, sizes.reshape(recorded, *lead)
-
-
-def bound_step(step: StepOnJax, field: GeneratorField, start: JaxArray) -> At:
-    """The step for a field and the trajectories that begin at `start`."""
-    return lambda m, t: step.at(field, m, t, start)

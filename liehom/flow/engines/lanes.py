@@ -17,7 +17,6 @@ from liehom.base.typing import Array, BooleanArray, IntegerArray, Values
 from liehom.flow.action.field import check_point
 from liehom.flow.action.maps import matrices_of
 from liehom.flow.action.space import Action
-from liehom.flow.engines.traced_step import totals_of
 from liehom.flow.run.options import END, EVENT
 from liehom.flow.run.run import Run
 from liehom.flow.tracing.array import Traced
@@ -314,8 +313,12 @@ class HandBack:
 
 
 def records_of(kernel: Kernel, row: dict[str, Array]) -> dict[str, tuple[Array, str]]:
-    """The totals of the steps, by name."""
-    return totals_of(kernel.graph, [row[name] for name in _recorded(kernel.graph)])
+    """The totals of the steps but the calls of psi, by name, with their kinds."""
+    graph = kernel.graph
+    kinds = ["max"] * len(graph.largest) + ["sum"] * len(graph.summed)
+    rows = zip((*graph.largest, *graph.summed), [row[e] for e in _recorded(graph)], kinds, strict=True)
+    kept = [(name, x, kind) for name, x, kind in rows if name != "calls"]
+    return {name.removeprefix("-"): (-x, "min") if name[0] == "-" else (x, kind) for name, x, kind in kept}
 
 
 def _recorded(graph: StepGraph) -> list[str]:
