@@ -18,17 +18,10 @@ from liehom.flow.steps.step import ExponentialLike, StepLike
 
 
 def integrate(
-    field: GeneratorField,
-    t_span: Iterable[float] | Span,
-    y0: npt.ArrayLike,
-    *,
-    step: StepLike | None = None,
-    args: Pytree = None,
-    exponential: ExponentialLike = "exp",
-    clock: str = "corrected",
-    engine: str | Engine = "auto",
+    field: GeneratorField, t_span: Iterable[float] | Span, y0: npt.ArrayLike, *, step: StepLike | None = None,
+    args: Pytree = None, exponential: ExponentialLike = "exp", clock: str = "corrected", engine: str | Engine = "auto",
     **options: Unpack[CallOptions],
-) -> Solution:
+) -> Solution:  # fmt: skip
     """Trajectories of m' = rho(psi(m, t)) m, a `Solution` that stays on the orbit of the initial point.
 
     Parameters

@@ -224,16 +224,6 @@ OPTIONS = {
 BILINEAR = ["dot", "tensordot", "cross", "inner", "outer", "vdot", "kron", "convolve", "correlate", "vecdot", "matmul"]
 JOINED = ["stack", "concatenate", "concat", "hstack", "vstack", "dstack", "column_stack"]
 PARTED = ["split", "array_split", "hsplit", "vsplit", "dsplit", "unstack"]
-# methods of arrays that are numpy functions of the same name
-METHODS = [
-    "conj", "conjugate", "cumsum", "diagonal", "dot", "mean", "prod", "ravel", "repeat", "reshape", "squeeze", "sum",
-    "swapaxes", "take", "trace", "transpose",
-]  # fmt: skip
-REFUSED_METHODS = [
-    "all", "any", "argmax", "argmin", "argpartition", "argsort", "choose", "clip", "compress", "cumprod", "item", "max",
-    "min", "nonzero", "partition", "ptp", "put", "resize", "round", "searchsorted", "sort", "std", "var", "fill",
-    "tobytes", "tofile", "view", "byteswap",
-]  # fmt: skip
 
 
 def apply_function(
@@ -262,12 +252,10 @@ def method(jet: Jet, name: str) -> Callable[..., Any]:
     """The method of arrays with this name, for a Jet."""
     if name in FUNCTIONS or name in ("arctan2", "hypot", "logaddexp"):
         return partial(getattr(np, name), jet)
-    if name in METHODS:
-        return partial(_method, jet, name)
     if name in EXTRA_METHODS:
         return partial(EXTRA_METHODS[name], jet)
-    if name in REFUSED_METHODS:
-        return partial(_refuse, name)
+    if callable(getattr(np.ndarray, name, None)) and not name.startswith("_"):
+        return partial(_method if hasattr(np, name) else _refuse, jet, name)
     raise AttributeError(f"a series has no attribute {name!r}")
 
 
@@ -279,7 +267,7 @@ def _method(jet: Jet, name: str, *args: object, **options: object) -> Any:
     return getattr(np, name)(jet, *args, **options)
 
 
-def _refuse(name: str, *args: object, **options: object) -> Never:
+def _refuse(jet: Jet, name: str, *args: object, **options: object) -> Never:
     raise refused(f"the method {name}")
 
 

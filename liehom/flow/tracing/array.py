@@ -30,10 +30,6 @@ STRUCTURAL = frozenset(["stack", "concatenate", "reshape", "swapaxes", "transpos
     "column_stack", "split", "array_split", "atleast_1d", "atleast_2d", "copy", "fliplr", "flipud", "rot90", "triu",
     "tril", "append", "diag", "delete", "insert", "rollaxis", "matrix_transpose", "vecdot", "block", "average",
     "concat", "permute_dims", "unstack", "einsum"])  # fmt: skip
-# methods of arrays that are numpy functions of the same name
-METHODS = frozenset(["astype", "copy", "item", "reshape", "transpose", "sum", "max", "min", "all", "any", "mean", "dot",
-    "swapaxes", "ravel", "squeeze", "clip", "prod", "trace", "diagonal", "take", "repeat", "cumsum", "conj",
-    "conjugate"])  # fmt: skip
 
 ExprArray: TypeAlias = npt.NDArray[Any]
 """An array of objects that are `Expr` of one tape."""
@@ -211,18 +207,13 @@ class Traced(NDArrayOperatorsMixin):
             raise TypeError("only an array of one entry can be a float")
         return float(self.entries.flat[0])
 
-    if TYPE_CHECKING:
-        # raises like __float__
-        def __int__(self) -> int: ...
-        def __index__(self) -> int: ...
-    else:
-        __int__ = __index__ = __float__
+    __int__ = __index__ = __float__  # type: ignore[assignment]  # they raise alike
     __hash__ = object.__hash__
 
     def __getattr__(self, name: str) -> Callable[..., Any]:
         if name.startswith("__"):
             raise AttributeError(name)
-        if name in METHODS:
+        if callable(getattr(np.ndarray, name, None)) and (hasattr(np, name) or name in ("astype", "item")):
             return lambda *args, **options: _method(self, name, *args, **options)
         if name in FOLDED:  # numpy's functions call these on arrays of objects, such as np.array([m[0], m[1]])
             return lambda: getattr(np, name)(self)

@@ -9,7 +9,7 @@ import operator
 from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass
 from types import ModuleType
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias, final
+from typing import Any, Literal, TypeAlias, final
 
 import numpy as np
 import numpy.typing as npt
@@ -184,13 +184,7 @@ class Expr:
             "entry of a float array): use numpy's functions and np.stack, or take engine='numpy'"
         )
 
-    if TYPE_CHECKING:
-        # raises like __float__
-        def __int__(self) -> int: ...
-        def __index__(self) -> int: ...
-        def __complex__(self) -> complex: ...
-    else:
-        __int__ = __index__ = __complex__ = __float__
+    __int__ = __index__ = __complex__ = __float__  # type: ignore[assignment]  # they raise alike
 
     def __repr__(self) -> str:
         return repr(self.value) if self.constant else f"<{self.op} {self.index}>"
@@ -200,17 +194,10 @@ class Expr:
 @final
 @dataclass(frozen=True, slots=True)
 class RunConstant:
-    """A number that all trajectories of a run share and that may differ from run to run, as a trajectory constant.
-
-    Attributes
-    ----------
-    name : str
-    value : float
-        Its value in the run for which the step was traced.
-    """
+    """A number that all trajectories of a run share and that may differ from run to run, as a trajectory constant."""
 
     name: str
-    value: float
+    value: float  # in the run for which the step was traced
 
     def __call__(self, points: npt.NDArray[Any]) -> npt.NDArray[np.float64]:
         return np.full(points.shape[:-1], self.value)
@@ -219,17 +206,10 @@ class RunConstant:
 @final
 @dataclass(frozen=True, slots=True)
 class LaneConstant:
-    """A number that each trajectory is given, as a trajectory constant that is not a function of the initial point.
-
-    Attributes
-    ----------
-    name : str
-    values : array of shape (L,)
-        Its values in the run for which the step was traced.
-    """
+    """A number that each trajectory is given, as a trajectory constant that is not a function of the initial point."""
 
     name: str
-    values: npt.NDArray[Any]
+    values: npt.NDArray[Any]  # (L,): in the run for which the step was traced
 
     def __call__(self, points: npt.NDArray[Any]) -> npt.NDArray[Any]:
         return self.values
@@ -240,8 +220,7 @@ class LaneConstant:
 
 UNROLLED_OPERATIONS = 28_000
 """Operations of a step up to which code has no loops over entries: it is 2 to 4 times faster, and compiles in 4 s."""
-LEAST_LOOP = 4
-"""Entries from which on an operation is a loop, if there are loops over entries."""
+LEAST_LOOP = 4  # entries from which on an operation is a loop, if there are loops over entries
 
 
 @final
@@ -253,16 +232,8 @@ class LongGraphError(Exception):
 class Table:
     """Coefficients of a map of lists: the sums of c x_i, or of c x_i y_j, over the terms of each row.
 
-    Attributes
-    ----------
-    rows : int
-        Number of results.
-    counts : array of shape (rows,)
-        Numbers of terms of the rows.
-    places : tuple of arrays of shape (terms,)
-        The positions i, or i and j, of each term, row by row.
-    factors : array of shape (terms,)
-        The numbers c.
+    Row by row, `places` are arrays (terms,) of the positions i, or i and j, and `factors` (terms,) the numbers c;
+    `counts` (rows,) are the numbers of terms of the rows.
     """
 
     __slots__ = ("counts", "digest", "factors", "places", "rows")
@@ -302,10 +273,8 @@ TrajectoryConstant: TypeAlias = Callable[[Any], Any]
 """A number of each trajectory, shape (L,), as a function of the initial points (L, N)."""
 
 COMMUTATIVE = frozenset(["add", "mul", "and", "or", "eq", "ne"])
-MAX_TERMS = 10
-"""Sums of at most this many terms are searched for terms that cancel."""
-CANCELLATION_RTOL = 4e-16
-"""Coefficients of a term cancel if their sum is at most this fraction of one of them."""
+MAX_TERMS = 10  # of sums that are searched for terms that cancel
+CANCELLATION_RTOL = 4e-16  # coefficients of a term cancel if their sum is at most this fraction of one of them
 
 
 @final
