@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cache
 from itertools import pairwise
 from math import comb
-from typing import Any, NamedTuple, final
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -133,22 +132,13 @@ MAX_TRIALS = 200  # number of attempts to find out which trajectories a step can
 MIN_ROUNDOFFS = 10.0  # the smallest relative tolerance, in units of round-off
 
 
-@final
-@dataclass(frozen=True, slots=True)
-class Tolerance:
-    """Error allowed in a step: at most atol + rtol |m|, as root mean squares over the coordinates and the last `axes`
-    leading axes (the sites of a lattice), and at least 10 units of round-off of m. Compiled steps give tracers.
+def allowed_error(rtol: Real, atol: Real, m: Values, axes: int = 0) -> Array:
+    """2-norm (...,) of the error that is allowed in a step from m (..., N): atol + rtol |m|, as root mean squares over
+    the coordinates and the last `axes` leading axes (the sites of a lattice), but at least 10 units of round-off of m.
     """
-
-    rtol: Real
-    atol: Real
-    axes: int = 0
-
-    def norm(self, m: Values) -> Array:
-        """2-norm of the error that is allowed at the points m (..., N), shape (...,)."""
-        point: Any = m
-        relative = namespace(self.rtol).maximum(self.rtol, MIN_ROUNDOFFS * float(np.finfo(point.dtype).eps))
-        return over_sites(self.atol * point.shape[-1] ** 0.5 + relative * length(point), self.axes)
+    point: Any = m
+    relative = namespace(rtol).maximum(rtol, MIN_ROUNDOFFS * float(np.finfo(point.dtype).eps))
+    return over_sites(atol * point.shape[-1] ** 0.5 + relative * length(point), axes)
 
 
 def whole_lattice(where: BooleanArray, axes: int) -> BooleanArray:
@@ -170,10 +160,6 @@ class SizeLimits(NamedTuple):
     tiny: Real  # below this size time does not advance
     gap: Real | None  # the longest time between two looks at psi (`liehom.flow.run.check`); None for no looks
     moves: float = float("inf")  # bound for the way of a point in a step, in units of |m|
-
-    def norm(self, m: Values, axes: int) -> Array:
-        """2-norm of the error that is allowed at the points m (..., N), shape (...,)."""
-        return Tolerance(self.rtol, self.atol, axes).norm(m)
 
 
 class Tried(NamedTuple):
@@ -206,8 +192,9 @@ def tried_size(
         bound = xp.minimum(bound, moves * time_scale(psi.field, m, t))
     h: Any = bound
     if not embedded:
-        known_trajectory(psi, local, m, t, order)
-        allowed, speed = limits.norm(m, axes), over_sites(length(local.trajectory[0]), axes)
+        if not local.trajectory:  # of a step that has not expanded it
+            flow_series(psi.field, m, order + ERROR_TERMS, t).note(local, order + ERROR_TERMS)
+        allowed, speed = allowed_error(limits.rtol, limits.atol, m, axes), over_sites(length(local.trajectory[0]), axes)
         if limits.gap is not None and psi.field.time_dependent:
             # terms far below the allowed error are not compared with |X| h, else steps go to 0 at a time when X does
             speed = xp.maximum(speed, allowed / bound)
@@ -252,12 +239,6 @@ def time_scale(field: GeneratorField, m: Values, t: Values) -> Array:
     return size / speed
 
 
-def known_trajectory(psi: Generator, local: LocalStep, m: Values, t: Values, order: int) -> None:
-    """Expand the trajectory to `ERROR_TERMS` orders above the order of a step that has not done so."""
-    if not local.trajectory:
-        flow_series(psi.field, m, order + ERROR_TERMS, t).note(local, order + ERROR_TERMS)
-
-
 def known_size(action: Action, local: LocalStep, m: Values, order: int, limits: StepLimits) -> Values:
     """The size that the step knows in advance (`LocalStep.size`), else from the Taylor coefficients of its error."""
     size = local.size(limits)
@@ -276,7 +257,8 @@ def judgement(
     h: Values = size[..., 0]
     if local.estimate_order is None:
         return True, MAX_GROWTH * abs(h)
-    return judged(local.estimate(size), limits.norm(m, axes), h, local.estimate_order, axes)
+    allowed = allowed_error(limits.rtol, limits.atol, m, axes)
+    return judged(local.estimate(size), allowed, h, local.estimate_order, axes)
 
 
 def judged(error: Values, allowed: Values, h: Values, order: int, axes: int = 0) -> tuple[BooleanArray, Array]:
