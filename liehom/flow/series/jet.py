@@ -25,30 +25,11 @@ from liehom.flow.series.arrays import (
 )
 from liehom.flow.series.node import Coefficient, Node, rewind
 
-# Table of the functions that `Jet` calls for numpy's protocols and the methods of arrays; their modules (`assembly`,
-# `jet_ufuncs`, `jet_functions`), which import `jet`, enter them here.
-
-Operand: TypeAlias = Any
-"""A Jet, an array, a number, or a nested list or array of objects that holds Jets."""
-
-
+Operand: TypeAlias = Any  # a Jet, an array, a number, or a nested list or array of objects that holds Jets
 WITHOUT_SERIES = "or take step='rk45', a Runge-Kutta step, which calls the generator on points only, as it is"
 """Remedy of messages about generators that cannot be expanded."""
-
-
-@final
-class Dispatch:
-    """Functions that implement methods of `Jet`."""
-
-    __slots__ = ("apply_function", "apply_ufunc", "method", "nodes")
-
-    nodes: Callable[..., list[Node]]
-    apply_ufunc: Callable[[Any, str, tuple[Any, ...], dict[str, Any]], Any]  # for ``__array_ufunc__``
-    apply_function: Callable[[Any, tuple[Any, ...], dict[str, Any]], Any]  # for ``__array_function__``
-    method: Callable[[Any, str], Any]  # methods of arrays that the class does not define
-
-
-dispatch: Dispatch = Dispatch()
+HOOKS: dict[str, Callable[..., Any]] = {}
+"""The functions for ``__array_ufunc__``, ``__array_function__`` and methods of arrays, which `jet_functions` enters."""
 
 
 # Assignment into Jets: entries are replaced by new series, so results computed before do not change. Slices and
@@ -83,17 +64,12 @@ def frozen(x: Any) -> Any:
 
 def checked_index(key: Key, x: Values) -> Key:
     """Copy of an index of the array x, with lists as arrays, checked against the shape (JAX would clip it)."""
-    key = tuple(map(_copied_index, key)) if isinstance(key, tuple) else _copied_index(key)
     parts = key if isinstance(key, tuple) else (key,)
+    parts = tuple(np.array(x, dtype=None if x else int) if isinstance(x, list) else frozen(x) for x in parts)
+    key = parts if isinstance(key, tuple) else parts[0]
     if is_jax(x) and not any(is_jax(part) for part in parts):
         np.broadcast_to(np.zeros(()), x.shape)[key]
     return key
-
-
-def _copied_index(part: Key) -> Key:
-    if isinstance(part, list):
-        return np.array(part, dtype=None if part else int)
-    return part.copy() if isinstance(part, np.ndarray) else part
 
 
 def kind_of_index(key: Key, ndim: int) -> str:
@@ -395,12 +371,12 @@ class Jet(NDArrayOperatorsMixin):
         all: Callable[..., Jet]
 
     def __array_ufunc__(self, ufunc: np.ufunc, method: str, *inputs: object, **options: object) -> Any:
-        return dispatch.apply_ufunc(ufunc, method, inputs, options)
+        return HOOKS["ufunc"](ufunc, method, inputs, options)
 
     def __array_function__(
         self, function: Callable[..., Any], types: Iterable[type], args: tuple[Any, ...], options: dict[str, Any]
     ) -> Any:
-        return dispatch.apply_function(function, args, options)
+        return HOOKS["function"](function, args, options)
 
     # -- what branches on values -------------------------------------------------------------------------
     def __bool__(self) -> bool:
@@ -450,7 +426,7 @@ class Jet(NDArrayOperatorsMixin):
             raise SeriesError(
                 "this series is given, or a part of one: write into a copy (m.copy(), np.zeros_like(m)) or use np.stack"
             )
-        node, part = dispatch.nodes(self, value)
+        node, part = nodes(self, value)
         if self._view is None:
             self._node = replaced(node, key, part)
         else:
@@ -503,7 +479,7 @@ class Jet(NDArrayOperatorsMixin):
 
     def __getattr__(self, name: str) -> Any:
         # other methods of arrays; numpy calls x.sin() for the entries of arrays of objects
-        return dispatch.method(self, name)
+        return HOOKS["method"](self, name)
 
     def __repr__(self) -> str:
         return f"<series of order {self.order} with values of shape {self.shape}>"
@@ -643,6 +619,3 @@ def on_series(function: Callable[..., T], *arguments: object) -> T:
         if reason is None or reason is error:
             raise
         raise SeriesError(str(reason)) from error
-
-
-dispatch.nodes = nodes

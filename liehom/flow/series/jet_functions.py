@@ -20,7 +20,7 @@ from liehom.base.errors import SeriesError
 from liehom.base.typing import Values
 from liehom.flow.series import node as recurrences
 from liehom.flow.series.arrays import across_lanes, constant_like, elementary, is_jax, is_lazy, namespace, solve, zeros
-from liehom.flow.series.jet import WITHOUT_SERIES, Jet, Operand, as_jet, dispatch, frozen, holds_jets, nodes
+from liehom.flow.series.jet import HOOKS, WITHOUT_SERIES, Jet, Operand, as_jet, frozen, holds_jets, nodes
 from liehom.flow.series.node import FUNCTIONS, Node
 from liehom.flow.tracing.sweeps import CHAINED, SLOPES
 
@@ -194,9 +194,6 @@ OPERATORS: dict[str, Callable[..., Node]] = {
     "multiply": lambda x, y: recurrences.product(*nodes(x, y)), "divide": _divide, "power": _power,
     "float_power": _power, "arctan2": _arctan2, "hypot": _hypot, "logaddexp": _logaddexp,
 }  # fmt: skip
-
-dispatch.apply_ufunc = apply_ufunc
-
 
 # Numpy's functions of arrays, and the methods of arrays, for Jets: linear in the first argument, bilinear, linear in a
 # list of arrays, with a list of parts as result, or special. Functions that are in no table, and options that would add
@@ -524,8 +521,7 @@ SPECIAL: dict[str, Callable[..., Any]] = {
     "result_type": lambda *args: np.result_type(*[a.dtype if isinstance(a, Jet) else a for a in args]),
 }  # fmt: skip
 
-dispatch.apply_function = apply_function
-dispatch.method = method
+HOOKS.update(ufunc=apply_ufunc, function=apply_function, method=method)
 
 
 # Series of functions that are written for JAX arrays, which do not run on Jets, by the Taylor mode of JAX.

@@ -26,8 +26,7 @@ from liehom.flow.tracing.machine import engine_of, lanes_per_register
 # last axes run on that site. np.roll along an axis of the lattice shifts the sites at which numbers are loaded, and
 # arrays of numbers over the lattice become loads too.
 
-Offset = tuple[int, ...]
-"""A shift of sites, one integer for each axis of the lattice."""
+Offset = tuple[int, ...]  # a shift of sites, one integer for each axis of the lattice
 
 MATRIX_PRODUCTS = frozenset(["matmul", "matvec", "vecmat"])
 REDUCTIONS = frozenset(["sum", "max", "min", "amax", "amin", "prod", "mean", "all", "any", "norm", "cumsum"])
@@ -256,8 +255,7 @@ Plane: TypeAlias = tuple[str, int, int]
 
 PAGE, SKEW = 512, 80
 """Planes begin 80 numbers beyond a multiple of 512: planes that begin alike compete for the same cache lines."""
-SITES_FOR_THREADS = 20_000
-"""Sites from which on threads share a stage."""
+SITES_FOR_THREADS = 20_000  # sites from which on threads share a stage
 
 
 @final

@@ -23,8 +23,7 @@ from liehom.flow.tracing.llvm_text import SHORT_SERIES_REACH, rotation_series
 Number: TypeAlias = Any
 """A number of a graph, or an array of such numbers."""
 
-SINQ_TERMS = 10
-"""Terms of the derivative of sin(r)/r by r^2, for |r| <= 1."""
+SINQ_TERMS = 10  # of the derivative of sin(r)/r by r^2, for |r| <= 1
 
 
 def gradient(output: Expr, inputs: Sequence[Expr]) -> list[Expr]:
@@ -54,13 +53,15 @@ def evaluated(outputs: Sequence[Expr], inputs: Mapping[int, Any]) -> list[Any]:
     """List of the outputs of a graph, computed by numpy on arrays of any precision, Jets or tracers."""
     values: dict[int, Any] = {}
     for x in needed(outputs):
-        if x.constant:
-            values[x.index] = x.value
-        elif x.op == "input":
-            values[x.index] = inputs[x.value]
-        else:
-            values[x.index] = applied(np, x.op, [values[a.index] for a in x.args])
+        values[x.index] = _value_of(x, values, inputs)
     return [values[x.index] for x in outputs]
+
+
+def _value_of(x: Expr, values: Mapping[int, Any], inputs: Mapping[int, Any]) -> Number:
+    """The value of an elementary operation, an input or a constant, from those before."""
+    if x.constant:
+        return x.value
+    return inputs[x.value] if x.op == "input" else applied(np, x.op, [values[a.index] for a in x.args])
 
 
 # names in numpy of operations that have another one
@@ -167,8 +168,7 @@ SLOPES |= {
 # A recorded graph on arrays of one entry per lane: its values in one forward sweep, and weights of the outputs times
 # the derivatives of the graph in one backward sweep, at a few times the cost.
 
-EXP_TERMS = 18
-"""Terms of exp(A) for |A| <= 1, to double precision."""
+EXP_TERMS = 18  # of exp(A) for |A| <= 1, to double precision
 
 
 @final
@@ -186,24 +186,21 @@ class Sweeps:
         self.values: list[Array] = [np.broadcast_to(self._values[x.index], (lanes,)) for x in outputs]
 
     def _value(self, x: Expr, inputs: Mapping[int, Array | float]) -> Number:
-        if x.constant:
-            return x.value
-        if x.op == "input":
-            return inputs[x.value]
-        args = [self._values[a.index] for a in x.args]
         if x.op == "get":
-            return args[0][x.value]
+            return self._values[x.args[0].index][x.value]
         if x.op == "expv":  # exp(A) v, shape (n, L), of the entries of A and v
-            matrix, vector = self._parts(x.value, args)
+            matrix, vector = self._parts(x)
             return np.moveaxis((exponentials(matrix) @ vector[..., None])[..., 0], -1, 0)
         if x.op in ("loop", "map", "table"):
             raise TraceError(
                 "the derivative of a step with an iteration is not known: take an explicit method, or differentiate "
                 "with JAX (engine='jax')"
             )
-        return applied(np, x.op, args)
+        return _value_of(x, self._values, inputs)
 
-    def _parts(self, places: tuple[tuple[int, int], ...], args: list[Any]) -> tuple[Array, Array]:
+    def _parts(self, x: Expr) -> tuple[Array, Array]:
+        """The matrices and the vectors of an exponential."""
+        args, places = [self._values[a.index] for a in x.args], x.value
         n = len(args) - len(places)
         matrix = np.zeros((self.lanes, n, n))
         for (i, j), value in zip(places, args, strict=False):
@@ -253,7 +250,7 @@ class Sweeps:
 
         They are exp(A)^T w for v, and for A the block (1, 2) of exp of ((A^T, w v^T), (0, A^T)).
         """
-        matrix, vector = self._parts(x.value, [self._values[a.index] for a in x.args])
+        matrix, vector = self._parts(x)
         n = vector.shape[-1]
         weight = np.stack([np.broadcast_to(seeds.get(i, 0.0), (self.lanes,)) for i in range(n)], axis=-1)
         double = np.zeros((self.lanes, 2 * n, 2 * n))
