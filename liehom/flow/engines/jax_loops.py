@@ -70,7 +70,7 @@ class LocalOnJax(NamedTuple):
         """The size s with tau(s) = time, by Newton's method, and whether it converged."""
         if not self.clock:
             return time, jnp.ones(jnp.shape(time), dtype=bool)
-        s: Any = time
+        s = time
         for _ in range(NEWTON_ITERATIONS):
             slope = 1 + sum(k * c * s ** (k - 1) for k, c in self.clock)
             s = s + (time - self.time(s)) / jnp.clip(slope, MIN_RATE, MAX_RATE)
@@ -395,8 +395,7 @@ def with_adaptive_sizes(
 ) -> tuple[JaxArray, State, JaxArray]:  # fmt: skip
     """Points (k, ..., N) at the times, the last state, and the signed sizes (recorded, ...) of the ordinary steps."""
     lead = m.shape[:-1]
-    direction: Any = limits.direction
-    stop: Any = limits.end
+    direction, stop = limits.direction, limits.end
     psi, lanes, axes = Generator(field, step.orbit_dimension), int(np.prod(lead)), len(field.sites)
     places = jnp.arange(lanes)
 
@@ -404,18 +403,16 @@ def with_adaptive_sizes(
         state, proposal, sizes = carried
         local = at(state.m, state.t)
         inner: Any = local.local
-        guess: Any = first_size(limits, inner, psi, state.m, state.t)
+        guess = first_size(limits, inner, psi, state.m, state.t)
         if guess is not None:
             proposal = jnp.where(jnp.isinf(proposal), guess, proposal)
         tried = tried_size(limits, step.action, psi, inner, step.step.order, state.m, state.t, proposal, field)
-        certain: Any = tried.good
-        h: Any = direction * tried.size
+        h = direction * tried.size
         to_end, solved = local.size_for(stop - state.t)
         runs = local.runs(h)
         last = jnp.where(runs, direction * (stop - state.t - local.time(h)) <= SLACK * jnp.abs(h), False)
         h = jnp.where(last & solved, to_end, h)
-        judged: Any = judgement(limits, inner, state.m, h[..., None], axes)
-        accepted, proposal_after = judged
+        accepted, proposal_after = judgement(limits, inner, state.m, h[..., None], axes)
         after = jnp.where(last, stop, state.t + local.time(h))
         over = direction * (time - after) <= SLACK * jnp.abs(h)
         s, solved = local.size_for(jnp.where(over, time - state.t, h))
@@ -430,7 +427,7 @@ def with_adaptive_sizes(
         shrunk = jnp.where(good, proposal_after, MAX_SHRINK * jnp.abs(h))
         proposal = jnp.where(moving & ~(took & over), shrunk, proposal).astype(m.dtype)
         after_step = state.after(moved, after, took & ~over, took & over, direction)
-        after_step = after_step.failing(moving & ~certain, TOO_SMALL)
+        after_step = after_step.failing(moving & ~tried.good, TOO_SMALL)
         return after_step.failing(moving & (after_step.count >= most) & ~over, TOO_MANY), proposal, sizes
 
     def towards(carried: tuple[State, Any, Any], time: JaxArray) -> tuple[Any, JaxArray]:

@@ -128,7 +128,8 @@ def _totals(parts: Sequence[tuple[tuple[str, str, float], ...]]) -> tuple[tuple[
     values: dict[tuple[str, str], list[float]] = {}
     for name, kind, value in chain.from_iterable(parts):
         values.setdefault((name, kind), []).append(value)
-    return tuple((name, kind, {"max": max, "min": min, "sum": sum}[kind](x)) for (name, kind), x in values.items())
+    joins: dict[str, Callable[[list[float]], float]] = {"max": max, "min": min, "sum": sum}
+    return tuple((name, kind, joins[kind](x)) for (name, kind), x in values.items())
 
 
 def _conserved(reports: Sequence[ConservationReport]) -> ConservationReport:

@@ -17,7 +17,7 @@ from typing import Any, NamedTuple, TypeAlias, cast, final
 import numpy as np
 
 from liehom.base.errors import InputError, displayed
-from liehom.base.typing import Array, BooleanArray, Pytree
+from liehom.base.typing import Array, BooleanArray, Lanes, Pytree
 from liehom.flow.action.components import called_as_event, guarded
 from liehom.flow.run.check import repeated
 from liehom.flow.run.records import EventLog
@@ -41,7 +41,7 @@ class Look(NamedTuple):
     # (i, place, value, inwards, here) -> the derivative of event function i in the direction of integration, for the
     # trajectories `here`, at a place (t, y) of known value; inwards is 1 at the start of a step, -1 at its end
     slope: Callable[[int, tuple[Array, Array], Array, int, BooleanArray], Array]
-    h: Array  # the size of the step, (...,)
+    h: Lanes  # the size of the step, (...,)
     before: tuple[Array, Array]  # at the ends of the step
     after: tuple[Array, Array]
     moves: BooleanArray  # the trajectories that make it
@@ -72,16 +72,12 @@ class Events:
         """Number of event functions."""
         return len(self.functions)
 
-    def value(self, i: int, t: Array, y: Array) -> Array:
+    def value(self, i: int, t: Lanes, y: Lanes) -> Lanes:
         """g_i(t, y), shape (...,)."""
-        time: Any = t
-        if not isinstance(time, Traced) and not time.ndim:
-            time = np.asarray(t)[()]
-        answer = guarded(self.functions[i], f"events[{i}]", time, y)
-        point: Any = y
-        if isinstance(point, Traced):  # a function that ignores y returns a number
-            value: Any = Traced(point.tape, answer)
-            return value
+        t = t if isinstance(t, Traced) or t.ndim else np.asarray(t)[()]
+        answer = guarded(self.functions[i], f"events[{i}]", t, y)
+        if isinstance(y, Traced):  # a function that ignores y returns a number
+            return Traced(y.tape, answer)
         try:
             value = np.asarray(answer)
             value = value if value.dtype.kind == "f" else value.astype(np.float64, casting="same_kind")
@@ -136,7 +132,7 @@ class Events:
 
     def zeros(self, i: int, look: Look, start: Array, end: Array) -> list[tuple[BooleanArray, Array]]:
         """The zeros of g_i within a step, in the order of time: for which trajectories, and their sizes s in (0, h]."""
-        h: Any = look.h
+        h = look.h
 
         def g(s: Array) -> Array:
             return self.value(i, *look.position(s)).astype(s.dtype)
@@ -179,10 +175,9 @@ class Events:
         return here & (value < 0), s, sign * value
 
 
-def _some(where: object) -> bool:
+def _some(where: Lanes) -> bool:
     """Whether a condition holds somewhere, or may do so because its values are not known."""
-    condition: Any = where
-    return isinstance(condition, Traced) or bool(np.any(condition))
+    return isinstance(where, Traced) or bool(np.any(where))
 
 
 def lowest(

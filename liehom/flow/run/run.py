@@ -250,11 +250,9 @@ class Run:
         self.rest = self.dtype.type(8 * np.finfo(self.dtype).eps * max(abs(span[0]), abs(span[1])))
         self.tiny = max(float(self.rest), options.least_step)  # the smallest step size
         self.looked: Diagnostics = {}  # what the last step was checked by
-        end: Any = span[1]  # in the type of the points, as `direction`
-        direction: Any = self.direction
         self.limits: SizeLimits = SizeLimits(
-            options.rtol, options.atol, options.max_step, end, direction, self.tiny,
-            gap=gap_of(options.looks, end - span[0], psi.field),
+            options.rtol, options.atol, options.max_step, span[1], self.direction, self.tiny,
+            gap=gap_of(options.looks, span[1] - span[0], psi.field),
             moves=np.inf if options.events is None else MAX_MOVE_WITH_EVENTS,
         )  # fmt: skip
         self.keeps: bool = options.t_eval is None or options.dense_output
@@ -297,8 +295,7 @@ class Run:
         reached: Any = local.point(h[..., None])
         moves = now.active
         if adaptive:
-            judged: Any = judgement(self.limits, local, now.m, h[..., None], self.axes)
-            accepted, now.h = judged
+            accepted, now.h = judgement(self.limits, local, now.m, h[..., None], self.axes)
             moves = moves & accepted
         diagnostics = {**local.diagnostics(h[..., None]), **self.looked}
         good = np.isfinite(reached).all(axis=-1)
@@ -319,8 +316,7 @@ class Run:
         """The step size that the tolerance asks for, positive, (...,)."""
         limits = self.limits
         if local.estimate_order is not None and np.isinf(now.h).any():
-            guess: Any = first_size(limits, local, self.psi, now.m, now.t)
-            now.h = np.where(np.isinf(now.h), guess, now.h)
+            now.h = np.where(np.isinf(now.h), first_size(limits, local, self.psi, now.m, now.t), now.h)
         h, good, looks, cuts, _ = tried_size(
             limits, self.action, self.psi, local, self.step.order, now.m, now.t, now.h, self.psi.field
         )

@@ -387,7 +387,7 @@ class Jet(NDArrayOperatorsMixin):
             "float() of a series (or its assignment to an entry of a float array: use np.stack, np.zeros_like)"
         )
 
-    __int__ = __index__ = __complex__ = __trunc__ = __floor__ = __ceil__ = __float__  # type: ignore[assignment]
+    __int__ = __index__ = __complex__ = __trunc__ = __floor__ = __ceil__ = __float__
     __hash__ = object.__hash__
 
     def _sympy_(self) -> Never:

@@ -207,7 +207,7 @@ class Traced(NDArrayOperatorsMixin):
             raise TypeError("only an array of one entry can be a float")
         return float(self.entries.flat[0])
 
-    __int__ = __index__ = __float__  # type: ignore[assignment]  # they raise alike
+    __int__ = __index__ = __float__  # they raise alike
     __hash__ = object.__hash__
 
     def __getattr__(self, name: str) -> Callable[..., Any]:

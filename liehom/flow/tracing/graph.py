@@ -184,7 +184,7 @@ class Expr:
             "entry of a float array): use numpy's functions and np.stack, or take engine='numpy'"
         )
 
-    __int__ = __index__ = __complex__ = __float__  # type: ignore[assignment]  # they raise alike
+    __int__ = __index__ = __complex__ = __float__  # they raise alike
 
     def __repr__(self) -> str:
         return repr(self.value) if self.constant else f"<{self.op} {self.index}>"
