@@ -18,14 +18,15 @@ from liehom.flow.action.field import GeneratorField
 from liehom.flow.action.fingerprint import Watch, parts_of
 from liehom.flow.action.quadrics import tight_frame
 from liehom.flow.engines.engine import Problem, executed
-from liehom.flow.engines.jax_kernel import JaxKernel, enabled_x64
 from liehom.flow.engines.jax_loops import (
     ArrayStep,
     At,
     GraphStep,
+    JaxKernel,
     Leaves,
     Program,
     chosen,
+    enabled_x64,
     is_float,
     with_adaptive_sizes,
     with_given_sizes,

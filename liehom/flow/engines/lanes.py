@@ -13,7 +13,7 @@ from typing import Any, NamedTuple, TypeVar, final
 import numpy as np
 import numpy.typing as npt
 
-from liehom.base.typing import Array, BooleanArray, IntegerArray, Values
+from liehom.base.typing import Array, BooleanArray, IntegerArray, Lanes, Values
 from liehom.flow.action.field import check_point
 from liehom.flow.action.maps import matrices_of
 from liehom.flow.action.space import Action
@@ -82,7 +82,7 @@ def with_guard(graph: StepGraph, action: Action, dimension: int) -> StepGraph:
     return replace(graph, guard=guard, constant_functions=tuple(tape.constant_functions))
 
 
-def _has_rank(action: Action, m: Traced, size: Values, dimension: int) -> tuple[Values, Values]:
+def _has_rank(action: Action, m: Lanes, size: Lanes, dimension: int) -> tuple[Lanes, Lanes]:
     """Whether the orbit of a point m with m.m = size is certainly of at least, and at most, dimension d. A map of a
     random R^d to g, followed by the action on the point, is injective; if orbits of larger dimension exist, those of
     several R^(d + 1) are not. Their defect, divided by the smallest length before it, is round-off in all of them, and
@@ -91,11 +91,10 @@ def _has_rank(action: Action, m: Traced, size: Values, dimension: int) -> tuple[
     rng, tape = np.random.default_rng((0, dimension)), m.tape
     generic = check_point(action.representation, rng.normal(size=(4, m.shape[-1])))
     low = dimension < int(generic.max())
-    point: Any = m
-    frame: Any = action.infinitesimal.right(point)
-    certain: Any = Traced(tape, tape.false)
-    small: Any = certain
-    bounded: Any = Traced(tape, tape.true)
+    frame: Lanes = action.infinitesimal.right(m)
+    certain: Lanes = Traced(tape, tape.false)
+    bounded: Lanes = Traced(tape, tape.true)
+    small = certain
     for _ in range(GUARD_PROJECTIONS):
         lengths = _orthogonal_lengths(frame @ rng.normal(size=(action.dimension, dimension + low)))
         certain = certain | _are_certain(lengths[:dimension], size)

@@ -10,7 +10,7 @@ import numpy as np
 
 from liehom.base.errors import LiehomError, TraceError
 from liehom.base.pytrees import Leaf, PerTrajectory, leaves, mapped
-from liehom.base.typing import Array, IntegerArray, Pytree, Real, Values
+from liehom.base.typing import Array, IntegerArray, Lanes, Pytree, Real, Values
 from liehom.flow.action.field import GeneratorField
 from liehom.flow.action.quadrics import tight_frame
 from liehom.flow.action.space import Action
@@ -110,19 +110,18 @@ EPS = float(np.finfo(np.float64).eps)
 
 
 def size_to_stop(
-    local: LocalStep | None, h: Values, left: Values, bounds: tuple[Real, Real]
-) -> tuple[Values, Values, Values | bool]:
+    local: LocalStep | None, h: Lanes, left: Lanes, bounds: tuple[Lanes, Lanes]
+) -> tuple[Lanes, Lanes, Lanes]:
     """A step size that ends at a stop in the time `left` if the step reaches it: on tracers."""
     direction, tiny = bounds
     if local is None:
         reached = direction * (left - h) <= SLACK * np.abs(h) + tiny
         return np.where(reached, left, h), reached, True
-    size: Any = h
-    tape = size.tape
+    tape, size = h.tape, h
     passed = local.time(h)
     reached = direction * (left - passed) <= SLACK * np.abs(h)
 
-    def newton(wanted: Values, s: Values) -> tuple[list[Values], Values]:
+    def newton(wanted: Lanes, s: Lanes) -> tuple[list[Lanes], Lanes]:
         slope = 1 + sum(k * c * s ** (k - 1) for k, c in local.clock)
         new = s + (left - local.time(s)) / np.clip(slope, MIN_RATE, MAX_RATE)
         again = wanted & (np.abs(new - s) > 2 * EPS * np.abs(s))
