@@ -96,12 +96,9 @@ def _rounds(lanes: IntegerArray) -> list[IntegerArray]:
     """Indices of pairs in groups, in each of which a trajectory has at most one pair."""
     if not len(lanes):
         return []
-    order = np.argsort(lanes, kind="stable")
-    ordered = lanes[order]
-    begins = np.append(True, ordered[1:] != ordered[:-1])
-    rank = np.arange(len(lanes)) - np.maximum.accumulate(np.where(begins, np.arange(len(lanes)), 0))
-    by_rank = np.argsort(rank, kind="stable")
-    return [order[group] for group in np.split(by_rank, np.flatnonzero(np.diff(rank[by_rank])) + 1)]
+    order, rank = np.argsort(lanes, kind="stable"), np.empty(len(lanes), dtype=int)
+    rank[order] = np.arange(len(lanes)) - np.searchsorted(lanes[order], lanes[order])
+    return np.split(np.argsort(rank, kind="stable"), np.cumsum(np.bincount(rank))[:-1])
 
 
 # Events of compiled runs: machine code makes the steps of a call, then events are sought in all of them at once. Event
@@ -177,8 +174,8 @@ class EventSearch:
 
     def _field(self, lanes: IntegerArray) -> GeneratorField:
         """The field, with args of these lanes."""
-        args = self.run.field.args
-        return self.run.field if args is None else self.run.field.with_args(args_of_lanes(args, self.run.shape, lanes))
+        args = args_of_lanes(self.run.field.args, self.run.shape, lanes)
+        return self.run.field if args is None else self.run.field.with_args(args)
 
     # -- the search --------------------------------------------------------------------------------------
     def __call__(self, lanes: IntegerArray, before: tuple[Array, Array, IntegerArray], done: LaneSteps) -> LaneSteps:

@@ -31,7 +31,7 @@ from liehom.flow.run.control import (
 )
 from liehom.flow.run.options import CLOCK, END, IMPLICIT, NOT_FINITE, TOO_MANY, TOO_SMALL
 from liehom.flow.steps.step import Generator, LocalStep, Step
-from liehom.flow.tracing.graph import TrajectoryConstant, needed
+from liehom.flow.tracing.graph import needed
 from liehom.flow.tracing.loop import StepGraph
 from liehom.flow.tracing.machine import Kernel
 from liehom.flow.tracing.run_text import ALIVE, DONE, FAILED, Constant
@@ -56,7 +56,7 @@ class JaxKernel(Kernel):
     """The run of a traced step as a jitted loop over steps, all lanes at once, each with its own sizes and times."""
 
     engine = "jax"
-    in_lockstep, cost = False, 16  # cost on the CPU
+    in_lockstep, has_prologue, cost = False, False, 16  # cost on the CPU
     # XLA compiles operations one by one in a time that grows with the square of their number
     tracing: ClassVar[dict[str, Any]] = {"branching": False, "unrolled": 4000}
 
@@ -66,13 +66,6 @@ class JaxKernel(Kernel):
         self._constants: Any = constants
         options = {"static_argnames": "stored", **options_of("forward")}
         self._jit: Compiled = _shared(_fingerprint(self.graph), "kernel", self._loop, options)
-
-    def _place(self, function: TrajectoryConstant) -> Constant:
-        place = super()._place(function)
-        if isinstance(place, tuple):
-            return place
-        self.lane_constants.append(function)
-        return "lane", len(self.lane_constants) - 1
 
     def __call__(self, state: npt.NDArray[np.float64], **fields: npt.NDArray[Any] | float | None) -> None:
         known: dict[str, Any] = dict(fields)

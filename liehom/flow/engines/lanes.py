@@ -26,8 +26,7 @@ from liehom.flow.tracing.machine import PLACES, Kernel, lanes_per_register
 
 # How many operations a step has, and how many lanes a block of its code should have.
 
-SHORT_OPERATIONS, LONG_OPERATIONS = 200, 1000
-"""Operations between two loops up to which code is short, and from which on it is long."""
+SHORT_OPERATIONS, LONG_OPERATIONS = 200, 1000  # between two loops, up to which and from which on code is short and long
 ASSUMED_ITERATIONS = 5  # iterations that a loop in a step is assumed to make, for the number of its operations
 
 
@@ -35,11 +34,8 @@ def operations(graph: StepGraph) -> int:
     """Approximate number of scalar operations of a step."""
     rows = needed(graph.outputs)
     tables = sum(len(x.value[0].factors) for x in rows if x.op == "table")
-    return (
-        len(rows)
-        + tables
-        + ASSUMED_ITERATIONS * sum(len(x.value.inside) for x in rows if x.op == "loop" and not x.value.guarded)
-    )
+    inside = sum(len(x.value.inside) for x in rows if x.op == "loop" and not x.value.guarded)
+    return len(rows) + tables + ASSUMED_ITERATIONS * inside
 
 
 def block_width(graph: StepGraph, lanes: int) -> int:
@@ -128,13 +124,12 @@ def _are_certain(lengths: Sequence[Any], scale: Values) -> Values:
 # The lanes of a kernel: their state as rows, and what becomes of them in the state of a run.
 
 PATH_BYTES_PER_CALL = 64_000_000  # bytes of points, times and sizes that a kernel call records at most
-OPERATIONS_PER_CALL = 4_000_000_000
-"""Scalar operations per kernel call, summed over lanes. Progress, checkpoints and Ctrl-C are handled between calls."""
+OPERATIONS_PER_CALL = 4_000_000_000  # summed over lanes; progress, checkpoints and Ctrl-C are handled between calls
 MIN_STEPS_PER_CALL = 8  # steps per kernel call at least: the time between two calls is that of some steps
 LANE_STEPS_FOR_THREADS = 50_000  # steps of a call, summed over lanes, from which on threads share the blocks
 T = TypeVar("T")
 Job = TypeVar("Job")
-_POOL: dict[int, ThreadPoolExecutor] = {}
+_POOL: dict[int, ThreadPoolExecutor] = {}  # threads that kernels share, by their number
 if hasattr(os, "register_at_fork"):
     os.register_at_fork(after_in_child=_POOL.clear)
 
@@ -211,16 +206,11 @@ def run_blocks(kernel: Kernel, state: Array, fields: Mapping[str, Any], steps: i
 def in_threads(function: Callable[[Job], T], jobs: Sequence[Job]) -> list[T]:
     """The values of a function that machine code makes, in threads."""
     workers = min(cores(), len(jobs))
-    if workers == 1:
+    if workers <= 1:
         return [function(job) for job in jobs]
-    return [job.result() for job in [_pool(workers).submit(function, job) for job in jobs]]
-
-
-def _pool(workers: int) -> ThreadPoolExecutor:
-    """The threads that kernels share."""
     if workers not in _POOL:
         _POOL[workers] = ThreadPoolExecutor(workers, thread_name_prefix="liehom")
-    return _POOL[workers]
+    return [job.result() for job in [_POOL[workers].submit(function, job) for job in jobs]]
 
 
 def cores() -> int:

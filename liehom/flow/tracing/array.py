@@ -31,8 +31,7 @@ STRUCTURAL = frozenset(["stack", "concatenate", "reshape", "swapaxes", "transpos
     "tril", "append", "diag", "delete", "insert", "rollaxis", "matrix_transpose", "vecdot", "block", "average",
     "concat", "permute_dims", "unstack", "einsum"])  # fmt: skip
 
-ExprArray: TypeAlias = npt.NDArray[Any]
-"""An array of objects that are `Expr` of one tape."""
+ExprArray: TypeAlias = npt.NDArray[Any]  # an array of objects that are `Expr` of one tape
 
 
 def _sign(tape: Tape, x: Expr) -> Expr:

@@ -41,42 +41,13 @@ def _printed(x: Expr) -> int | tuple[str, Any]:
     return ("=", x.value) if x.constant else x.index
 
 
-def scalar_while_loop(
-    tape: Tape, start: Sequence[Expr], body: Callable[[list[Expr]], tuple[Sequence[Expr], Expr]], limit: int, *,
-    guarded: bool = False,
-) -> list[Expr]:  # fmt: skip
-    """Tracers of the variables after a loop.
-
-    A lane that has converged iterates along with the others; `body` must keep its numbers, by `Tape.select`.
-    """
-    first, calls, count = len(tape.recorded), tape.calls, len(start)
-    tape.calls = tape.zero
-    variables = [tape.variable((first, i), boolean=x.boolean) for i, x in enumerate(start)]
-    new, again = body(list(variables))
-    if tape.calls is not tape.zero:  # count the calls of psi in each lane's own iterations
-        start = [*start, tape.zero, tape.true]
-        total, wanted = (tape.variable((first, count + i), boolean=i == 1) for i in (0, 1))
-        new = [*new, total + tape.select(wanted, tape.calls, tape.zero), tape.both(wanted, again)]
-        variables += [total, wanted]
-    changing = {x.index for x in variables}
-    inside = []
-    for x in needed([*new, again]):
-        if x.index not in changing and any(a.index in changing for a in x.args):
-            changing.add(x.index)
-            inside.append(x)
-    read = [*new, again, *[a for x in inside for a in x.args]]
-    fixed = {x.index: x for x in read if x.index not in changing and not x.constant}
-    loop = Loop(tuple(variables), tuple(new), again, tuple(inside), limit, guarded)
-    after = tape.block("loop", [*start, *fixed.values()], len(start), loop)
-    tape.calls = calls + after[count] if len(after) > count else calls
-    return after[:count]
-
-
 def while_loop(
     function: Callable[..., tuple[Sequence[Any], Any]], start: Sequence[Any], tape: Tape, limit: int, *,
     guarded: bool = False,
 ) -> list[Traced]:  # fmt: skip
     """Traced arrays after a loop; `function` takes them to (their new values, whether to iterate again).
+
+    A lane that has converged iterates along with the others; `function` must keep its numbers, by `np.where`.
 
     Examples
     --------
@@ -86,18 +57,35 @@ def while_loop(
     <traced array of shape (2,)>
     """
     arrays = [Traced(tape, x) for x in start]
+    before = [e for x in arrays for e in x.entries.flat]
+    first, calls, count = len(tape.recorded), tape.calls, len(before)
     cuts = np.cumsum([x.size for x in arrays])[:-1]
 
     def shaped(entries: Sequence[Expr]) -> list[Traced]:
-        flat = np.empty(len(entries), dtype=object)
+        flat = np.empty(count, dtype=object)
         flat[:] = entries
         return [Traced(tape, e.reshape(x.shape)) for e, x in zip(np.split(flat, cuts), arrays, strict=True)]
 
-    def body(entries: list[Expr]) -> tuple[list[Expr], Expr]:
-        new, again = function(*shaped(entries))
-        return [e for x in new for e in Traced(tape, x).entries.flat], Traced(tape, again).entry
-
-    return shaped(scalar_while_loop(tape, [e for x in arrays for e in x.entries.flat], body, limit, guarded=guarded))
+    tape.calls = tape.zero
+    variables = [tape.variable((first, i), boolean=x.boolean) for i, x in enumerate(before)]
+    values, wish = function(*shaped(variables))
+    new, again = [e for x in values for e in Traced(tape, x).entries.flat], Traced(tape, wish).entry
+    if tape.calls is not tape.zero:  # count the calls of psi in each lane's own iterations
+        before += [tape.zero, tape.true]
+        total, wanted = (tape.variable((first, count + i), boolean=i == 1) for i in (0, 1))
+        new += [total + tape.select(wanted, tape.calls, tape.zero), tape.both(wanted, again)]
+        variables += [total, wanted]
+    changing, inside = {x.index for x in variables}, []
+    for x in needed([*new, again]):
+        if x.index not in changing and any(a.index in changing for a in x.args):
+            changing.add(x.index)
+            inside.append(x)
+    read = [*new, again, *[a for x in inside for a in x.args]]
+    fixed = {x.index: x for x in read if x.index not in changing and not x.constant}
+    loop = Loop(tuple(variables), tuple(new), again, tuple(inside), limit, guarded)
+    after = tape.block("loop", [*before, *fixed.values()], len(before), loop)
+    tape.calls = calls + after[count] if len(after) > count else calls
+    return shaped(after[:count])
 
 
 @final

@@ -158,6 +158,7 @@ class Kernel:
     engine: ClassVar[str] = "llvm"  # as reports name it
     in_lockstep: ClassVar[bool] = True  # whether lanes make steps of one size together, without stops of their own
     tracing: ClassVar[dict[str, Any]] = {}  # options of a trace
+    has_prologue: ClassVar[bool] = True  # whether it computes constants of the trajectories
     cost: ClassVar[int] = 1  # duration of an operation, in units of one of machine code
 
     def __init__(self, graph: StepGraph, width: int) -> None:
@@ -177,9 +178,10 @@ class Kernel:
         if isinstance(function, RunConstant):
             self.run_constants.append(function.name)
             return "run", len(self.run_constants) - 1
-        traced = None if isinstance(function, LaneConstant) else _on_tracers(function, self.graph)
-        if traced is not None:
-            return traced
+        if self.has_prologue and not isinstance(function, LaneConstant):
+            traced = _on_tracers(function, self.graph)
+            if traced is not None:
+                return traced
         self.lane_constants.append(function)
         return "lane", len(self.lane_constants) - 1
 

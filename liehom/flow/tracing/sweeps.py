@@ -12,16 +12,13 @@ import numpy as np
 
 from liehom.base.errors import TraceError
 from liehom.base.lazy import Module
-from liehom.base.typing import Array
+from liehom.base.typing import Array, Lanes
 from liehom.flow.tracing.array import Traced, entire_function
 from liehom.flow.tracing.graph import COARSE, OPERATORS, Expr, needed
 from liehom.flow.tracing.llvm_text import SHORT_SERIES_REACH, rotation_series
 
 # Derivatives of a recorded graph in reverse mode: one pass backwards gives all partial derivatives as graphs, at a
 # few times the cost of the function; and the value of a graph by numpy's functions, on arrays, Jets and tracers.
-
-Number: TypeAlias = Any
-"""A number of a graph, or an array of such numbers."""
 
 SINQ_TERMS = 10  # of the derivative of sin(r)/r by r^2, for |r| <= 1
 
@@ -57,7 +54,7 @@ def evaluated(outputs: Sequence[Expr], inputs: Mapping[int, Any]) -> list[Any]:
     return [values[x.index] for x in outputs]
 
 
-def _value_of(x: Expr, values: Mapping[int, Any], inputs: Mapping[int, Any]) -> Number:
+def _value_of(x: Expr, values: Mapping[int, Any], inputs: Mapping[int, Any]) -> Lanes:
     """The value of an elementary operation, an input or a constant, from those before."""
     if x.constant:
         return x.value
@@ -68,7 +65,7 @@ def _value_of(x: Expr, values: Mapping[int, Any], inputs: Mapping[int, Any]) -> 
 NAMES = {"and": "logical_and", "not": "logical_not", "select": "where"}
 
 
-def applied(xp: ModuleType, op: str, args: Sequence[Number]) -> Any:
+def applied(xp: ModuleType, op: str, args: Sequence[Lanes]) -> Any:
     """The value of an elementary operation, by numpy or by JAX."""
     if op in ("sinq", "cosq"):
         return rotation(xp, args[0], int(op == "sinq"))
@@ -80,7 +77,7 @@ def applied(xp: ModuleType, op: str, args: Sequence[Number]) -> Any:
     return function(*args)
 
 
-def rotation(xp: ModuleType, q: Number, first: int) -> Any:
+def rotation(xp: ModuleType, q: Lanes, first: int) -> Any:
     """sin(r)/r (first = 1) or cos(r) (first = 0) with r^2 = q; neither value nor derivative of any branch overflows."""
     near = xp.abs(q) < SHORT_SERIES_REACH
     total: Any = 0.0
@@ -93,7 +90,7 @@ def rotation(xp: ModuleType, q: Number, first: int) -> Any:
     return xp.where(near, total, xp.where(safe > 0, round_, straight))
 
 
-def partials(op: str, args: Sequence[Number], value: Number, *, fixed_exponent: bool = False) -> tuple[Number, ...]:
+def partials(op: str, args: Sequence[Lanes], value: Lanes, *, fixed_exponent: bool = False) -> tuple[Lanes, ...]:
     """The partial derivatives of an operation by its arguments, arrays or tracers, one for each."""
     match op:
         case "add":
@@ -119,7 +116,7 @@ def partials(op: str, args: Sequence[Number], value: Number, *, fixed_exponent: 
     return (SLOPES[op](args[0], value),)
 
 
-def _sinq_slope(q: Number, x: Number) -> Number:
+def _sinq_slope(q: Lanes, x: Lanes) -> Lanes:
     """Derivative of sin(r)/r by q = r^2: (cos(r) - sin(r)/r) / 2q, and near q = 0 its series."""
     near = np.abs(q) < 1.0
     total: Any = 0.0
@@ -128,7 +125,7 @@ def _sinq_slope(q: Number, x: Number) -> Number:
     return np.where(near, total, 0.5 * (_rotation_of("cosq", q) - x) / np.where(near, 1.0, q))
 
 
-def _rotation_of(name: str, q: Number) -> Number:
+def _rotation_of(name: str, q: Lanes) -> Lanes:
     """sin(r)/r or cos(r) of r^2, an array or a tracer."""
     return entire_function(name, q) if isinstance(q, Traced) else applied(np, name, [q])
 
@@ -185,7 +182,7 @@ class Sweeps:
                 self._values[x.index] = self._value(x, inputs)
         self.values: list[Array] = [np.broadcast_to(self._values[x.index], (lanes,)) for x in outputs]
 
-    def _value(self, x: Expr, inputs: Mapping[int, Array | float]) -> Number:
+    def _value(self, x: Expr, inputs: Mapping[int, Array | float]) -> Lanes:
         if x.op == "get":
             return self._values[x.args[0].index][x.value]
         if x.op == "expv":  # exp(A) v, shape (n, L), of the entries of A and v
@@ -233,7 +230,7 @@ class Sweeps:
                     seeds[argument.index] = seeds[argument.index] + part if argument.index in seeds else part
         return sums
 
-    def _through(self, x: Expr, seed: Number) -> list[tuple[Expr, Any]]:
+    def _through(self, x: Expr, seed: Lanes) -> list[tuple[Expr, Any]]:
         """The weights of the arguments of an operation, from the weight of its result."""
         args = [self._values[a.index] for a in x.args]
         if x.op == "select":
