@@ -18,7 +18,7 @@ from liehom.flow.engines.engine import Problem
 from liehom.flow.engines.lanes import LaneSteps, Memory, times_until
 from liehom.flow.engines.traced_step import all_of, arg_values, args_of_lanes, traced_args, with_traced_frame
 from liehom.flow.run.events import Events, Look
-from liehom.flow.run.records import EventLog
+from liehom.flow.run.records import EventLog, Occurrence, occurrences_of
 from liehom.flow.run.run import Run, StepProposal
 from liehom.flow.steps.step import Generator, Step, length
 from liehom.flow.tracing.array import Traced
@@ -124,18 +124,6 @@ class Steps(NamedTuple):
     first: BooleanArray  # whether it is the first one of its lane
 
 
-class Occurrence(NamedTuple):
-    """A zero of event function `event` at the size |s| within step number `step`, at (t, y)."""
-
-    step: int
-    distance: float
-    event: int
-    s: float
-    t: Any
-    y: Any
-    counted: bool
-
-
 @final
 class EventSearch:
     """Looks for the events of a run in steps that a kernel has made."""
@@ -193,12 +181,12 @@ class EventSearch:
             now[steps.lane[last]] = end[last]
             values.append(now.reshape(self.run.shape))
             for p in np.flatnonzero(fresh & events.left(i, start, end)):
-                occurrences.append(Occurrence(int(p), 0.0, i, 0.0, steps.t[p], steps.m[p], counted=False))
+                occurrences.append(Occurrence(int(p), 0.0, i, int(steps.lane[p]), 0.0, steps.t[p], steps.m[p], False))
             chosen = np.flatnonzero(events.crossed(i, start, end) | self._turns(i, steps, start, end))
             for k in range(0, len(chosen), STEPS_AT_ONCE):
                 occurrences += self._located(i, steps, chosen[k : k + STEPS_AT_ONCE], start, end)
         self.run.state.event_values = values
-        halts = self._recorded(steps, sorted(occurrences, key=lambda x: x[:3]))
+        halts = self.run.state.event_log.record(occurrences, events.terminal)
         return _truncated(self.run, steps, before[2], halts, done) if halts else done
 
     def _turns(self, i: int, steps: Steps, start: Array, end: Array) -> BooleanArray:
@@ -261,30 +249,8 @@ class EventSearch:
         look = Look(step.position, slope, h, (t, m), (after, reached), yes)
         occurrences: list[Occurrence] = []
         for here, s in events.zeros(i, look, start[where], end[where]):
-            times, points = step.position(np.where(here, s, 0))
-            flat = [np.reshape(x, len(chosen)) for x in (here, s, times)]
-            rows = np.reshape(points, (len(chosen), -1))
-            for k in np.flatnonzero(flat[0]):
-                size = float(flat[1][k])
-                occurrences.append(Occurrence(int(chosen[k]), abs(size), i, size, flat[2][k], rows[k], counted=True))
-        return occurrences
-
-    def _recorded(self, steps: Steps, occurrences: list[Occurrence]) -> Mapping[int, Occurrence]:
-        """Record occurrences, in order of time in each lane, up to the terminal ones, which are returned by lane."""
-        log, halts = self.run.state.event_log, dict[int, Occurrence]()
-        counts = np.array(log.occurrences)
-        flat, terminal = counts.reshape(len(counts), -1), self.values.events.terminal
-        for x in occurrences:
-            lane = int(steps.lane[x.step])
-            halt = halts.get(lane)
-            if halt is not None and (x.step, x.distance) > (halt.step, halt.distance):
-                continue
-            log.rows.append((x.event, lane, x.t, x.y))
-            flat[x.event, lane] += x.counted
-            if x.counted and flat[x.event, lane] >= terminal[x.event]:
-                halts.setdefault(lane, x)
-        log.occurrences = counts
-        return halts
+            occurrences += occurrences_of(i, here, s, *step.position(np.where(here, s, 0)))
+        return [x._replace(step=int(chosen[x.lane]), lane=int(lanes[x.lane])) for x in occurrences]
 
 
 def _listed(lanes: IntegerArray, before: tuple[Array, Array, IntegerArray], done: LaneSteps) -> Steps:
@@ -469,7 +435,7 @@ class PlannedEvents:
         if all((np.minimum.reduce(made, axis=1) * np.maximum.reduce(made, axis=1) > 0).tolist()):
             return log  # no value and no slope changes its sign
         g, ahead, back = made.reshape(3, events.count, lanes, k)
-        rows: list[tuple[int, int, float, int, Any, Array, bool]] = []
+        occurrences: list[Occurrence] = []
         starts, ends = g[..., :-1], g[..., 1:]
         same = starts * ends > 0
         turning = same & (starts * back[..., 1:] > 0) & (starts * ahead[..., :-1] < 0)
@@ -477,7 +443,7 @@ class PlannedEvents:
         for i in range(events.count):
             start, end, turns = starts[i], ends[i], turning[i]
             for lane in np.flatnonzero(events.left(i, start[:, 0], end[:, 0])).tolist():
-                rows.append((lane, 0, 0.0, i, t[lane, 0], y[lane, :, 0].copy(), False))
+                occurrences.append(Occurrence(0, 0.0, i, lane, 0.0, t[lane, 0], y[lane, :, 0].copy(), False))
             some = (turns | events.crossed(i, start, end)).nonzero()
             if not len(some[0]):
                 continue
@@ -493,15 +459,9 @@ class PlannedEvents:
             if np.isnan(zeros).any():
                 return None
             for here, s, time, *point in zeros.reshape(2, n + 3, -1):
-                rows += [
-                    (int(b[p]), int(j[p]), abs(float(s[p])), i, time[p], np.array([x[p] for x in point]), True)
-                    for p in np.flatnonzero(here)
-                ]
-        log.rows = [(i, b, time, point) for b, _, _, i, time, point, _ in sorted(rows, key=lambda row: row[:4])]
-        counts = np.zeros((events.count, lanes))
-        for b, _, _, i, _, _, counted in rows:
-            counts[i, b] += counted
-        return None if (counts >= np.array(events.terminal)[:, None]).any() else log
+                found = occurrences_of(i, here, s, time, np.transpose(point))
+                occurrences += [x._replace(step=int(j[x.lane]), lane=int(b[x.lane])) for x in found]
+        return None if log.record(occurrences, events.terminal) else log
 
 
 def planned_events(problem: Problem, step: Step, dimension: int, made: Array) -> PlannedEvents | None:

@@ -16,7 +16,7 @@ import numpy.typing as npt
 from liehom.base.disk import digest
 from liehom.base.errors import InputError, LiehomError, ShapeError
 from liehom.base.pytrees import Leaf, PerTrajectory, check_numbers, mapped
-from liehom.base.store import open_store
+from liehom.base.store import Store, open_store
 from liehom.base.tasks import BUFFERSIZE, ExecutorLike, completed
 from liehom.base.typing import Array, IntegerArray, Pytree
 from liehom.flow.action.field import GeneratorField, check_point
@@ -226,19 +226,31 @@ def all_solved(
     problems: Sequence[EnsembleProblem], executor: ExecutorLike, store: str | os.PathLike[str] | None, retries: int = 2
 ) -> list[Solution]:
     """The solutions of problems that differ in dt, in order, computed on an executor and kept in a store if given."""
-    names = [f"run-{number:04d}" for number in range(len(problems))]
-    kept, solutions = None, dict[int, Solution]()
+    kept = None
     if store is not None:
         together = problems[0].options | {"dt": [problem.options["dt"] for problem in problems]}
         kept = open_store(store, problems[0]._replace(options=together).fingerprint(problems[0].made(), []))
-        read = {i: kept.restored(name, from_arrays) for i, name in enumerate(names) if name in kept.names()}
-        solutions = {i: solution for i, solution in read.items() if solution is not None}
-    todo = [i for i in range(len(problems)) if i not in solutions]
-    for number, solution in completed(solved, (problems[i] for i in todo), executor, retries=retries):
+    names = [f"run-{number:04d}" for number in range(len(problems))]
+    solutions = dict(_stored(names, problems.__getitem__, kept, executor, retries=retries))
+    return [solutions[i] for i in range(len(problems))]
+
+
+def _stored(
+    names: Sequence[str], task: Callable[[int], EnsembleProblem], kept: Store | None, executor: ExecutorLike,
+    **options: int,
+) -> Iterator[tuple[int, Solution]]:  # fmt: skip
+    """(number, solution) of tasks: first those that a store has under their names, then the others, which it gets."""
+    done, todo = frozenset() if kept is None else kept.names(), list[int]()
+    for i, name in enumerate(names):
+        stored = kept.restored(name, from_arrays) if kept is not None and name in done else None
+        if stored is None:
+            todo.append(i)
+        else:
+            yield i, stored
+    for number, solution in completed(solved, map(task, todo), executor, **options):
         if kept is not None:
             kept.save(names[todo[number]], *as_arrays(solution))
-        solutions[todo[number]] = solution
-    return [solutions[i] for i in range(len(problems))]
+        yield todo[number], solution
 
 
 # -- private helpers ---------------------------------------------------------------------------------------
@@ -399,25 +411,12 @@ def ensemble_parts(
     if options.get("step") is None and not has_series(one_field, start, problem.ends()[0]):
         problem.options["step"] = as_step("dop853")
     kept = None if store is None else open_store(store, problem.fingerprint(one_field, bounds))
-    done = frozenset() if kept is None else kept.names()
-    todo = [rows for rows in bounds if _name(rows) not in done]
-
-    def parts() -> Iterator[EnsemblePart]:
-        for rows in bounds:
-            if kept is not None and _name(rows) in done:
-                stored = kept.restored(_name(rows), from_arrays)
-                if stored is None:
-                    todo.append(rows)
-                else:
-                    yield EnsemblePart(*rows, stored)
-        tasks, buffersize = (problem.task(rows) for rows in todo), _buffersize(start, chunk)
-        for number, solution in completed(solved, tasks, executor, retries=retries, buffersize=buffersize):
-            rows = todo[number]
-            if kept is not None:
-                kept.save(_name(rows), *as_arrays(solution))
-            yield EnsemblePart(*rows, solution)
-
-    return parts()
+    # chunks in flight, whose initial points take some 100 MB
+    size = max(64, min(BUFFERSIZE, 10**8 // (8 * chunk * int(start[0].size))))
+    parts = _stored(
+        list(map(_name, bounds)), lambda i: problem.task(bounds[i]), kept, executor, retries=retries, buffersize=size
+    )
+    return (EnsemblePart(*bounds[i], solution) for i, solution in parts)
 
 
 def stored_parts(store: str | os.PathLike[str]) -> Iterator[EnsemblePart]:
@@ -465,11 +464,6 @@ def _bounds(n: int, chunk: int) -> list[tuple[int, int]]:
     """Rows (first, last) of the chunks: as few as possible, of sizes that differ by at most 1."""
     count = -(-n // chunk)
     return list(pairwise(i * n // count for i in range(count + 1)))
-
-
-def _buffersize(start: Array, chunk: int) -> int:
-    """Number of chunks in flight, whose initial points take some 100 MB."""
-    return max(64, min(BUFFERSIZE, 10**8 // (8 * chunk * int(start[0].size))))
 
 
 def _name(rows: tuple[int, int]) -> str:

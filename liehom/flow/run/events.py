@@ -20,7 +20,7 @@ from liehom.base.errors import InputError, displayed
 from liehom.base.typing import Array, BooleanArray, Lanes, Pytree
 from liehom.flow.action.components import called_as_event, guarded
 from liehom.flow.run.check import repeated
-from liehom.flow.run.records import EventLog
+from liehom.flow.run.records import EventLog, Occurrence, occurrences_of
 from liehom.flow.tracing.array import Traced
 
 ITERATIONS = 200
@@ -111,23 +111,15 @@ class Events:
         self, log: EventLog, look: Look, before: list[Array], after: list[Array], fresh: BooleanArray
     ) -> tuple[Array, BooleanArray]:
         """Record the events in a step; returns the size up to the first terminal one, and for which trajectories."""
-        halted, stop = np.zeros(np.shape(look.h), dtype=bool), look.h
-        zeros: list[tuple[int, BooleanArray, Array]] = []
+        occurrences: list[Occurrence] = []
         for i, (start, end) in enumerate(zip(before, after, strict=True)):
-            at_start = look.moves & fresh & self.left(i, start, end)
-            if at_start.any():
-                log.add(i, at_start, *look.before, counted=False)
-            count = log.occurrences[i]
+            at_start = occurrences_of(i, look.moves & fresh & self.left(i, start, end), 0 * look.h, *look.before)
+            occurrences += [x._replace(counted=False) for x in at_start]
             for here, s in self.zeros(i, look, start, end):
-                count = count + here
-                ends = here & (count >= self.terminal[i])
-                stop = np.where(ends & (np.abs(s) <= np.abs(stop)), s, stop)
-                halted = halted | ends
-                zeros.append((i, here, s))
-        for i, here, s in zeros:
-            kept = here & (np.abs(s) <= np.abs(stop))
-            if kept.any():
-                log.add(i, kept, *look.position(np.where(kept, s, 0)))
+                occurrences += occurrences_of(i, here, s, *look.position(np.where(here, s, 0)))
+        stop, halted = np.array(look.h), np.zeros(np.shape(look.h), dtype=bool)
+        for lane, x in log.record(occurrences, self.terminal).items():
+            stop.flat[lane], halted.flat[lane] = x.s, True
         return stop, halted
 
     def zeros(self, i: int, look: Look, start: Array, end: Array) -> list[tuple[BooleanArray, Array]]:

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, final
+from typing import Any, NamedTuple, final
 
 import numpy as np
 import numpy.typing as npt
 
-from liehom.base.typing import Array, BooleanArray, IntegerArray, Real, Values
+from liehom.base.typing import Array, BooleanArray, IntegerArray, Lanes, Real, Values
 from liehom.flow.action.space import Action
 from liehom.flow.steps.first_integral import combination
 from liehom.flow.steps.step import Diagnostics, LocalStep, Step
@@ -518,6 +518,26 @@ class Samples:
         self.points, self.done = arrays["points"], arrays["done"]
 
 
+class Occurrence(NamedTuple):
+    """A zero of an event function at the size s within a step, or at the `distance` |s|, for one trajectory."""
+
+    step: int
+    distance: Any
+    event: int
+    lane: int
+    s: Any
+    t: Any
+    y: Array
+    counted: bool = True  # towards the number that ends the trajectory
+
+
+def occurrences_of(event: int, here: BooleanArray, s: Lanes, t: Lanes, y: Lanes) -> list[Occurrence]:
+    """The occurrences at (t, y) of the trajectories `here`, which are at the sizes s of a step."""
+    sizes, times, points = np.reshape(s, -1), np.reshape(t, -1), np.reshape(y, (-1, y.shape[-1]))
+    lanes = np.flatnonzero(here).tolist()
+    return [Occurrence(0, abs(sizes[b]), event, b, sizes[b], times[b], points[b]) for b in lanes]
+
+
 @final
 class EventLog:
     """Log of the events that occurred: rows (event, trajectory, time, point), for each trajectory in order of time."""
@@ -527,14 +547,20 @@ class EventLog:
         self.occurrences: IntegerArray = np.zeros((count, *shape), dtype=int)
         self.rows: list[tuple[int, int, np.floating[Any], Array]] = []
 
-    def add(self, i: int, here: BooleanArray, t: Array, y: Array, *, counted: bool = True) -> None:
-        """Record event i at (t, y) for the trajectories `here`, `counted` towards the number that ends them."""
-        if counted:
-            more = np.zeros_like(self.occurrences)
-            more[i] = here
-            self.occurrences = self.occurrences + more
-        times, points = np.reshape(t, -1), np.reshape(y, (-1, self._size))
-        self.rows += [(i, int(b), times[b], points[b]) for b in np.flatnonzero(here)]
+    def record(self, occurrences: Sequence[Occurrence], terminal: Sequence[float]) -> dict[int, Occurrence]:
+        """Log occurrences in order of time, up to those that end a trajectory, which are returned by trajectory."""
+        halts, counts = dict[int, Occurrence](), np.array(self.occurrences)
+        flat = counts.reshape(len(counts), -1)
+        for x in sorted(occurrences, key=lambda x: x[:3]):
+            halt = halts.get(x.lane)
+            if halt is not None and x[:2] > halt[:2]:
+                continue
+            self.rows.append((x.event, x.lane, x.t, x.y))
+            flat[x.event, x.lane] += x.counted
+            if x.counted and flat[x.event, x.lane] >= terminal[x.event]:
+                halts.setdefault(x.lane, x)
+        self.occurrences = counts
+        return halts
 
     def lists(self) -> tuple[list[npt.NDArray[Any]], list[npt.NDArray[Any]]]:
         """(t_events, y_events) of a `Solution`."""
