@@ -464,16 +464,13 @@ class State(NamedTuple):
         """The state after a step: `commits` says where it was an ordinary step, `lands` where it was the last one."""
         took = commits | lands
         lossy = took & ((moved.failed > 0) | (moved.near > 0))
+        failed, near = (jnp.where(took, x, 0.0).astype(self.t.dtype) for x in (moved.failed, moved.near))
         return self._replace(
-            m=jnp.where(commits[..., None], moved.point, self.m),
-            t=jnp.where(commits, t, self.t).astype(self.t.dtype),
-            count=self.count + commits,
-            failed=self.failed + jnp.where(took, moved.failed, 0.0).astype(self.t.dtype),
-            near=self.near + jnp.where(took, moved.near, 0.0).astype(self.t.dtype),
+            m=jnp.where(commits[..., None], moved.point, self.m), count=self.count + commits,
+            t=jnp.where(commits, t, self.t).astype(self.t.dtype), failed=self.failed + failed, near=self.near + near,
             lost=jnp.where(lossy, direction * jnp.minimum(direction * self.lost, direction * self.t), self.lost),
-            landed=self.landed | lands,
-            output=jnp.where(lands[..., None], moved.point, self.output),
-        )
+            landed=self.landed | lands, output=jnp.where(lands[..., None], moved.point, self.output),
+        )  # fmt: skip
 
     def failing(self, where: JaxArray, code: int | JaxArray) -> State:
         """The state in which some trajectories have failed, in a way that is a code of `run.options`."""

@@ -574,12 +574,9 @@ class EventLog:
 
     def arrays(self) -> dict[str, npt.NDArray[Any]]:
         """The state as named arrays, for a checkpoint."""
-        return {
-            "occurrences": self.occurrences,
-            "index": np.array([row[:2] for row in self.rows], dtype=int).reshape(-1, 2),
-            "t": np.array([row[2] for row in self.rows]),
-            "y": np.array([row[3] for row in self.rows]),
-        }
+        index = np.array([row[:2] for row in self.rows], dtype=int).reshape(-1, 2)
+        t, y = (np.array([row[k] for row in self.rows]) for k in (2, 3))
+        return {"occurrences": self.occurrences, "index": index, "t": t, "y": y}
 
     def restore(self, arrays: Mapping[str, npt.NDArray[Any]]) -> None:
         """Replace the state by one that `arrays` returned."""

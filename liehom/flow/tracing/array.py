@@ -54,24 +54,16 @@ LOGICAL: dict[str, Callable[..., Expr]] = {
     "logical_xor": _exclusive, "bitwise_xor": _exclusive, "logical_not": Tape.negated, "invert": Tape.negated,
 }  # fmt: skip
 ELEMENTS: dict[str, Callable[..., Expr]] = {
-    "absolute": lambda tape, x: tape.call("abs", x),
-    "fabs": lambda tape, x: tape.call("abs", x),
-    "maximum": Tape.largest,
-    "minimum": partial(Tape.largest, least=True),
-    "fmax": _known_extremum,
-    "fmin": partial(_known_extremum, least=True),
-    "greater": lambda tape, a, b: tape.compare("lt", b, a),
-    "greater_equal": lambda tape, a, b: tape.compare("le", b, a),
+    **dict.fromkeys(["absolute", "fabs"], lambda tape, x: tape.call("abs", x)),
+    "maximum": Tape.largest, "minimum": partial(Tape.largest, least=True), "fmax": _known_extremum,
+    "fmin": partial(_known_extremum, least=True), "greater": lambda tape, a, b: tape.compare("lt", b, a),
+    "greater_equal": lambda tape, a, b: tape.compare("le", b, a), "isnan": lambda tape, a: tape.compare("ne", a, a),
     "isfinite": lambda tape, a: tape.compare("lt", tape.call("abs", a), tape.constant(np.inf)),
     "isinf": lambda tape, a: tape.compare("eq", tape.call("abs", a), tape.constant(np.inf)),
-    "isnan": lambda tape, a: tape.compare("ne", a, a),
-    "power": Tape.power,
-    "float_power": Tape.power,
-    "hypot": lambda tape, a, b: tape.call("sqrt", a * a + b * b),
-    "sign": _sign,
-    **dict.fromkeys(["deg2rad", "radians"], lambda tape, a: a * (np.pi / 180)),
+    "power": Tape.power, "float_power": Tape.power, "hypot": lambda tape, a, b: tape.call("sqrt", a * a + b * b),
+    "sign": _sign, **dict.fromkeys(["deg2rad", "radians"], lambda tape, a: a * (np.pi / 180)),
     **dict.fromkeys(["rad2deg", "degrees"], lambda tape, a: a * (180 / np.pi)),
-}
+}  # fmt: skip
 
 
 def solve_linear(tape: Tape, a: ExprArray, b: ExprArray) -> ExprArray:

@@ -132,34 +132,20 @@ def _rotation_of(name: str, q: Lanes) -> Lanes:
 
 # The slope of a function of one number, from its argument and its value; the first rows are those of series, too.
 SLOPES: dict[str, Callable[[Any, Any], Any]] = {
-    "exp": lambda x, y: y,
-    "expm1": lambda x, y: y + 1,
-    "log": lambda x, y: 1 / x,
-    "log1p": lambda x, y: 1 / (x + 1),
-    "tan": lambda x, y: y * y + 1,
-    "tanh": lambda x, y: 1 - y * y,
-    "arctan": lambda x, y: 1 / (x * x + 1),
-    "arcsin": lambda x, y: 1 / np.sqrt(1 - x * x),
-    "arccos": lambda x, y: -1 / np.sqrt(1 - x * x),
-    "arcsinh": lambda x, y: 1 / np.sqrt(x * x + 1),
+    "exp": lambda x, y: y, "expm1": lambda x, y: y + 1, "log": lambda x, y: 1 / x, "log1p": lambda x, y: 1 / (x + 1),
+    "tan": lambda x, y: y * y + 1, "tanh": lambda x, y: 1 - y * y, "arctan": lambda x, y: 1 / (x * x + 1),
+    "arcsin": lambda x, y: 1 / np.sqrt(1 - x * x), "arccos": lambda x, y: -1 / np.sqrt(1 - x * x),
+    "arcsinh": lambda x, y: 1 / np.sqrt(x * x + 1), "arctanh": lambda x, y: 1 / (1 - x * x),
     "arccosh": lambda x, y: 1 / (np.sqrt(x - 1) * np.sqrt(x + 1)),
-    "arctanh": lambda x, y: 1 / (1 - x * x),
-}
+}  # fmt: skip
 CHAINED = tuple(SLOPES)
 SLOPES |= {
-    "sqrt": lambda x, y: 0.5 / y,
-    "cbrt": lambda x, y: 1 / (3 * y * y),
-    "sin": lambda x, y: np.cos(x),
-    "cos": lambda x, y: -np.sin(x),
-    "sinh": lambda x, y: np.cosh(x),
-    "cosh": lambda x, y: np.sinh(x),
-    "exp2": lambda x, y: math.log(2) * y,
-    "log2": lambda x, y: 1 / (math.log(2) * x),
-    "log10": lambda x, y: 1 / (math.log(10) * x),
-    "sinq": _sinq_slope,
-    "cosq": lambda q, y: -0.5 * _rotation_of("sinq", q),
-    "abs": lambda x, y: np.where(x < 0, -1.0, 1.0),
-}
+    "sqrt": lambda x, y: 0.5 / y, "cbrt": lambda x, y: 1 / (3 * y * y), "sin": lambda x, y: np.cos(x),
+    "cos": lambda x, y: -np.sin(x), "sinh": lambda x, y: np.cosh(x), "cosh": lambda x, y: np.sinh(x),
+    "exp2": lambda x, y: math.log(2) * y, "log2": lambda x, y: 1 / (math.log(2) * x),
+    "log10": lambda x, y: 1 / (math.log(10) * x), "abs": lambda x, y: np.where(x < 0, -1.0, 1.0),
+    "sinq": _sinq_slope, "cosq": lambda q, y: -0.5 * _rotation_of("sinq", q),
+}  # fmt: skip
 
 
 # A recorded graph on arrays of one entry per lane: its values in one forward sweep, and weights of the outputs times
