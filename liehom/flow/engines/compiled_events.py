@@ -41,9 +41,7 @@ class EventValues:
     """The event functions of a run at pairs (t, y); trials on other trajectories say which take all pairs `at_once`."""
 
     def __init__(self, run: Run) -> None:
-        events: Any = run.stops.events
-        self.events: Events = events
-        self.run = run
+        self.run, self.events = run, run.stops.events or Events([])
         self.start = run.start.reshape(-1, run.start.shape[-1])
         lanes, size = self.start.shape
         some = np.arange(max(lanes, size) + 1)[::-1] if lanes else np.zeros(0, dtype=int)
@@ -53,14 +51,13 @@ class EventValues:
             points = points * (1 + NEAR * np.random.default_rng(0).normal(size=points.shape))
         self.trial_points: Array = points
         begin = np.full(len(self.trial_lanes), float(run.span[0]))
-        self.at_once = [True] * events.count
-        for i in range(events.count):
+        self.at_once = [True] * self.events.count
+        for i in range(self.events.count):
             self.checked(i, begin, points, self.trial_lanes, len(begin))
 
     def of(self, lanes: IntegerArray) -> Events:
         """The event functions of pairs t (p,), y (p, N) of these trajectories."""
-        functions: Any = self.run.options.events
-        events = Events(functions, args_of_lanes(self.run.field.args, self.run.shape, lanes))
+        events = Events(self.run.options.events or [], args_of_lanes(self.run.field.args, self.run.shape, lanes))
         events.functions = [
             function if self.at_once[i] else partial(self._in_turn, i, lanes)
             for i, function in enumerate(events.functions)
@@ -366,10 +363,9 @@ class PlannedEvents:
 
     def __init__(self, problem: Problem, step: Step, dimension: int) -> None:
         self.problem, self.step, self.dimension = problem, step, dimension
-        functions: Any = problem.options.events
         self.n, self.lead = np.shape(problem.start)[-1], np.ndim(problem.start) - 1
-        self.functions: Any = functions
-        self.events: Events = Events(functions, problem.args)
+        self.functions: Any = problem.options.events
+        self.events: Events = Events(self.functions or [], problem.args)
         self.parts = Parts(self.functions if isinstance(self.functions, list | tuple) else [self.functions])
         self.at_points = self._at_points()
         self.in_steps: dict[int, PointCode | None] = {}

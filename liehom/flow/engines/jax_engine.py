@@ -175,11 +175,10 @@ class JaxEngine:
             if problem.options.events is not None:
                 raise InputError("engine='jax' does not look for events: take engine='llvm' or engine='numpy'")
             return executed(problem, lambda run: CompiledRun(problem, run, CodeStore(JaxKernel)))
-        start: Any = problem.start
         if self._watch is None or self._watch.changed():
             self._programs, self.steps = {}, {}
-            self._watch = Watch(problem.bound, start, problem.span[0])
-        with enabled_x64() if start.dtype == np.float64 else nullcontext():
+            self._watch = Watch(problem.bound, problem.start, problem.span[0])
+        with enabled_x64() if problem.start.dtype == np.float64 else nullcontext():
             return _Call(self, problem).solution()
 
     def program(self, key: Hashable, function: Callable[..., Sequence[JaxArray]], arguments: Leaves) -> Program:

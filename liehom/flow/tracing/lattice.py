@@ -304,7 +304,7 @@ class LatticeKernel:
 
     def __init__(self, inputs: SiteInputs, stages: list[Stage], time: Expr, size: Expr, coordinates: int) -> None:
         self.stages, self.coordinates, self._inputs = stages, coordinates, inputs
-        self._scalars = {time.value: "%t", size.value: "%h"}
+        self._scalars = time.value, size.value
         self._bound = {x.value: (k, graph) for k, stage in enumerate(stages) for x, graph in stage.values}
         self._loads: list[dict[int, tuple[Plane, tuple[int, ...]]]] = [self._loaded(k) for k in range(len(stages))]
         self._store_values()
@@ -382,10 +382,8 @@ class LatticeKernel:
         for plane in used:
             place = w.emit(f"getelementptr ptr, ptr %planes, i64 {self.places[plane]}")
             w.lines.append(f"  %p{self.places[plane]} = load ptr, ptr {place}")
-        w.lines.append(f"  %t = fadd {v} {w.spread('%time')}, {w.splat(-0.0)}")
-        w.lines.append(f"  %h = fadd {v} {w.spread('%size')}, {w.splat(-0.0)}")
+        names = dict(zip(self._scalars, map(w.spread, ("%time", "%size")), strict=True))
         w.lines += ["  br label %site", "site:", "  %at = phi i64 [%begin, %entry], [%next, %site.end]"]
-        names = dict(self._scalars)
         for index, (plane, offset) in loads.items():
             at = w.emit(f"add i64 %at, {self.layout.distance(offset)}")
             pointer = w.emit(f"getelementptr double, ptr %p{self.places[plane]}, i64 {at}")
