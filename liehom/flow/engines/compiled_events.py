@@ -26,34 +26,85 @@ from liehom.flow.tracing.graph import LaneConstant, RunConstant, Tape, Trajector
 from liehom.flow.tracing.loop import StepGraph
 from liehom.flow.tracing.machine import PLACES, Kernel, lanes_per_register, padded
 
-# Event functions on any number of points of a run, also those that take only what an eager run gives them. An event
-# function is called with all points at once if that gives, at some points, what it gives for them in the form of the
-# run: a point (N,), or the whole ensemble (..., N). Others are called in that form, as often as needed.
-
 FAILURES = (LiehomError, TypeError, ValueError, IndexError, KeyError, ArithmeticError)
 """What functions raise that were not written for this number of points."""
 RTOL = 1e-9
-NEAR = 1e-3
+NEAR = 1e-3  # relative distance of trial points
+
+
+# Events of compiled runs: machine code makes the steps of a call, then events are sought in all of them at once. Event
+# functions are evaluated at the ends of all steps of all lanes. The steps in which a zero is possible, by the rules of
+# `liehom.flow.run.events`, are made again in numpy from their stored starts, and the zeros are located on their dense
+# output. A terminal event truncates what the machine code has made of its lane.
+#
+# An event function is called with all points at once if that gives, at some points, what it gives for them in the form
+# of the run: a point (N,), or the whole ensemble (..., N). Others are called in that form, as often as needed.
+
+STEPS_AT_ONCE = 16_384  # steps that are made again at once, at most
+ROOT_EPS = float(np.sqrt(np.finfo(np.float64).eps))
+
+
+class Steps(NamedTuple):
+    """The steps of some lanes, of each lane in order of time, one lane after the other."""
+
+    row: IntegerArray  # (p,): where the step is stored
+    column: IntegerArray
+    lane: IntegerArray  # its trajectory in the flattened ensemble
+    t: Array  # time and point before the step
+    m: Array  # (p, N)
+    h: Array  # signed size
+    after: Array  # time and point after the step
+    reached: Array  # (p, N)
+    first: BooleanArray  # whether it is the first one of its lane
 
 
 @final
-class EventValues:
-    """The event functions of a run at pairs (t, y); trials on other trajectories say which take all pairs `at_once`."""
+class EventSearch:
+    """Looks for the events of a run in steps that a kernel has made."""
 
     def __init__(self, run: Run) -> None:
         self.run, self.events = run, run.stops.events or Events([])
         self.start = run.start.reshape(-1, run.start.shape[-1])
+        self.dimensions = np.broadcast_to(np.asarray(run.psi.orbit_dimension), run.shape).reshape(-1)
         lanes, size = self.start.shape
         some = np.arange(max(lanes, size) + 1)[::-1] if lanes else np.zeros(0, dtype=int)
-        self.trial_lanes: IntegerArray = some % max(lanes, 1)
-        points = self.start[self.trial_lanes]
+        trial: IntegerArray = some % max(lanes, 1)
+        points = self.start[trial]
         if not run.shape:  # points that differ, as those of an ensemble do
             points = points * (1 + NEAR * np.random.default_rng(0).normal(size=points.shape))
-        self.trial_points: Array = points
-        begin = np.full(len(self.trial_lanes), float(run.span[0]))
         self.at_once = [True] * self.events.count
         for i in range(self.events.count):
-            self.checked(i, begin, points, self.trial_lanes, len(begin))
+            self.checked(i, np.full(len(trial), float(run.span[0])), points, trial, len(trial))
+        self.psi_at_once = not lanes or self._psi_works_at_once(trial, points)
+        if not self.psi_at_once and run.shape:
+            raise InputError(
+                "engine='llvm' looks for events by calls of psi for some trajectories of the ensemble, and this psi "
+                "cannot be called so: write it for points of shape (..., N), or take engine='numpy'"
+            )
+
+    @property
+    def ends_runs(self) -> bool:
+        """Whether an event is terminal."""
+        return bool(np.isfinite(self.events.terminal).any())
+
+    def _psi_works_at_once(self, lanes: IntegerArray, points: Array) -> bool:
+        """Whether psi takes more points than there are trajectories, as arrays (..., N)."""
+        field, begin, shape = self.run.field, float(self.run.span[0]), self.run.shape
+        try:
+            values = np.asarray(self._field(lanes).psi(points, np.full(len(lanes), begin)))
+            if shape:
+                eager = np.asarray(field.psi(self.run.start, np.full(shape, begin)))
+                wanted = np.broadcast_to(eager, (*shape, eager.shape[-1])).reshape(len(self.start), -1)[lanes]
+            else:
+                wanted = np.array([field.psi(m, np.float64(begin)) for m in points])
+            return bool(np.allclose(np.broadcast_to(values, wanted.shape), wanted, equal_nan=True))
+        except FAILURES:
+            return False
+
+    def _field(self, lanes: IntegerArray) -> GeneratorField:
+        """The field, with args of these lanes."""
+        args = args_of_lanes(self.run.field.args, self.run.shape, lanes)
+        return self.run.field if args is None else self.run.field.with_args(args)
 
     def of(self, lanes: IntegerArray) -> Events:
         """The event functions of pairs t (p,), y (p, N) of these trajectories."""
@@ -88,91 +139,17 @@ class EventValues:
             values[here] = value.reshape(-1)[lanes[here]]
         return values
 
-
-def _rounds(lanes: IntegerArray) -> list[IntegerArray]:
-    """Indices of pairs in groups, in each of which a trajectory has at most one pair."""
-    if not len(lanes):
-        return []
-    order, rank = np.argsort(lanes, kind="stable"), np.empty(len(lanes), dtype=int)
-    rank[order] = np.arange(len(lanes)) - np.searchsorted(lanes[order], lanes[order])
-    return np.split(np.argsort(rank, kind="stable"), np.cumsum(np.bincount(rank))[:-1])
-
-
-# Events of compiled runs: machine code makes the steps of a call, then events are sought in all of them at once. Event
-# functions are evaluated at the ends of all steps of all lanes. The steps in which a zero is possible, by the rules of
-# `liehom.flow.run.events`, are made again in numpy from their stored starts, and the zeros are located on their dense
-# output. A terminal event truncates what the machine code has made of its lane.
-
-STEPS_AT_ONCE = 16_384  # steps that are made again at once, at most
-ROOT_EPS = float(np.sqrt(np.finfo(np.float64).eps))
-
-
-class Steps(NamedTuple):
-    """The steps of some lanes, of each lane in order of time, one lane after the other."""
-
-    row: IntegerArray  # (p,): where the step is stored
-    column: IntegerArray
-    lane: IntegerArray  # its trajectory in the flattened ensemble
-    t: Array  # time and point before the step
-    m: Array  # (p, N)
-    h: Array  # signed size
-    after: Array  # time and point after the step
-    reached: Array  # (p, N)
-    first: BooleanArray  # whether it is the first one of its lane
-
-
-@final
-class EventSearch:
-    """Looks for the events of a run in steps that a kernel has made."""
-
-    def __init__(self, run: Run) -> None:
-        self.run = run
-        self.values = EventValues(run)
-        self.start = run.start.reshape(-1, run.start.shape[-1])
-        self.dimensions = np.broadcast_to(np.asarray(run.psi.orbit_dimension), run.shape).reshape(-1)
-        self.psi_at_once = not len(self.start) or self._psi_works_at_once()
-        if not self.psi_at_once and run.shape:
-            raise InputError(
-                "engine='llvm' looks for events by calls of psi for some trajectories of the ensemble, and this psi "
-                "cannot be called so: write it for points of shape (..., N), or take engine='numpy'"
-            )
-
-    @property
-    def ends_runs(self) -> bool:
-        """Whether an event is terminal."""
-        return bool(np.isfinite(self.values.events.terminal).any())
-
-    def _psi_works_at_once(self) -> bool:
-        """Whether psi takes more points than there are trajectories, as arrays (..., N)."""
-        lanes, points, field = self.values.trial_lanes, self.values.trial_points, self.run.field
-        begin, shape = float(self.run.span[0]), self.run.shape
-        try:
-            values = np.asarray(self._field(lanes).psi(points, np.full(len(lanes), begin)))
-            if shape:
-                eager = np.asarray(field.psi(self.run.start, np.full(shape, begin)))
-                wanted = np.broadcast_to(eager, (*shape, eager.shape[-1])).reshape(len(self.start), -1)[lanes]
-            else:
-                wanted = np.array([field.psi(m, np.float64(begin)) for m in points])
-            return bool(np.allclose(np.broadcast_to(values, wanted.shape), wanted, equal_nan=True))
-        except FAILURES:
-            return False
-
-    def _field(self, lanes: IntegerArray) -> GeneratorField:
-        """The field, with args of these lanes."""
-        args = args_of_lanes(self.run.field.args, self.run.shape, lanes)
-        return self.run.field if args is None else self.run.field.with_args(args)
-
     # -- the search --------------------------------------------------------------------------------------
     def __call__(self, lanes: IntegerArray, before: tuple[Array, Array, IntegerArray], done: LaneSteps) -> LaneSteps:
         """Record the events in the steps of some lanes; returns the steps up to the terminal ones."""
         steps = _listed(lanes, before, done)
         if not len(steps.row):
             return done
-        events, values = self.values.events, []
+        events, values = self.events, []
         fresh, last = steps.first & (before[2][steps.column] == 0), np.append(steps.first[1:], True)
         occurrences: list[Occurrence] = []
         for i, known in enumerate(self.run.state.event_values):
-            end = self.values.checked(i, steps.after, steps.reached, steps.lane)
+            end = self.checked(i, steps.after, steps.reached, steps.lane)
             start, now = np.concatenate([end[:1], end[:-1]]), np.array(known).reshape(-1)
             start[steps.first] = now[steps.lane[steps.first]]
             now[steps.lane[last]] = end[last]
@@ -201,7 +178,7 @@ class EventSearch:
         """Derivatives of g_i at places (t, y) of lanes, in the direction of integration (see `Look.slope`)."""
         if not len(lanes):
             return np.zeros(0)
-        field, events = self._field(lanes), self.values.of(lanes)
+        field, events = self._field(lanes), self.of(lanes)
         if self.psi_at_once:
             vector = np.asarray(field.vector(y, t))
         else:
@@ -229,7 +206,7 @@ class EventSearch:
     ) -> list[Occurrence]:  # fmt: skip
         """The zeros of g_i in the steps of numbers `chosen`; `where` is the same, or one number without an axis."""
         run, lanes = self.run, steps.lane[chosen]
-        events = self.values.events if np.ndim(where) == 0 else self.values.of(lanes)
+        events = self.events if np.ndim(where) == 0 else self.of(lanes)
         field = self._field(lanes)
         own = self.start[steps.lane[where]]
         psi = Generator(field, self.dimensions[steps.lane[where]], own)
@@ -248,6 +225,15 @@ class EventSearch:
         for here, s in events.zeros(i, look, start[where], end[where]):
             occurrences += occurrences_of(i, here, s, *step.position(np.where(here, s, 0)))
         return [x._replace(step=int(chosen[x.lane]), lane=int(lanes[x.lane])) for x in occurrences]
+
+
+def _rounds(lanes: IntegerArray) -> list[IntegerArray]:
+    """Indices of pairs in groups, in each of which a trajectory has at most one pair."""
+    if not len(lanes):
+        return []
+    order, rank = np.argsort(lanes, kind="stable"), np.empty(len(lanes), dtype=int)
+    rank[order] = np.arange(len(lanes)) - np.searchsorted(lanes[order], lanes[order])
+    return np.split(np.argsort(rank, kind="stable"), np.cumsum(np.bincount(rank))[:-1])
 
 
 def _listed(lanes: IntegerArray, before: tuple[Array, Array, IntegerArray], done: LaneSteps) -> Steps:
