@@ -47,15 +47,6 @@ class Seen(NamedTuple):
     point: Values
 
 
-class Checked(NamedTuple):
-    """Sizes (...,) of steps after the check, how often psi was looked at and a size was cut, and the first look."""
-
-    size: Lanes
-    looks: Lanes
-    cuts: Lanes
-    seen: Seen
-
-
 def gap_of(looks: int | None, span: Lanes, field: GeneratorField) -> Lanes | None:
     """The longest time between two looks: None if there are none, inf if there is one in a step."""
     if looks is None:
@@ -73,8 +64,10 @@ def is_unbounded(gap: Real | None) -> bool:
 def checked(
     field: GeneratorField, local: LocalStep, m: Values, t: Lanes, h: Lanes, allowed: Lanes, left: Values, *,
     direction: Lanes, gap: Lanes, tiny: Lanes, axes: int,
-) -> Checked:  # fmt: skip
-    """Sizes at most h, without sign, at which the series of a step passes all looks; below `tiny` if there are none."""
+) -> tuple[Lanes, Lanes, Lanes, Seen]:  # fmt: skip
+    """Sizes at most h, without sign, at which the series of a step passes all looks; below `tiny` if there are none.
+    Also how often psi was looked at and a size was cut, and the first look.
+    """
     xp, c = namespace(m, t, h), local.trajectory
     root = 1 / (len(c) + 1)
     rounded: Lanes = squared_length(c[0])
@@ -112,7 +105,7 @@ def checked(
     zero = 0.0 * size
     residual, wanted, seen = look(size, zero)
     _, cut, _, _, looks, cuts = repeated(again, [wanted, h, zero, residual, zero + 1, zero])
-    return Checked(cut, looks, cuts, seen)
+    return cut, looks, cuts, seen
 
 
 def _within(local: LocalStep, h: Lanes, left: Values, direction: Real) -> Lanes:

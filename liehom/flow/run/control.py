@@ -193,7 +193,13 @@ def tried_size(
         gap = limits.gap
         if is_unbounded(gap) and not local.looks_ahead:  # exponentials may turn a point many times in a step
             gap = xp.maximum(left / LOOKS, MAX_WAY * over_sites(length(m), axes) / speed)
-        h = known_size(action, local, m, order, StepLimits(allowed, speed, h, axes))
+        bounds = StepLimits(allowed, speed, h, axes)
+        h = local.size(bounds)
+        if h is None:  # the step does not know it: from the Taylor coefficients of its error
+            series = step_series(action, local, m, order + ERROR_TERMS)
+            terms = range(order + 1, order + ERROR_TERMS + 1)
+            local.defects = tuple((k, length(local.trajectory[k - 1] - series.coefficient(k))) for k in terms)
+            h = size_from_defects(local.defects, *bounds)
         if limits.gap is not None:
             h, looks, cuts, seen = checked(
                 looked_at, local, m, t, h, allowed, left,
@@ -228,17 +234,6 @@ def time_scale(field: GeneratorField, m: Values, t: Values) -> Array:
     if isinstance(size, np.ndarray | np.floating) and not size.all():  # the point 0 does not move
         return np.where(size == 0, np.inf, size / speed)
     return size / speed
-
-
-def known_size(action: Action, local: LocalStep, m: Values, order: int, limits: StepLimits) -> Values:
-    """The size that the step knows in advance (`LocalStep.size`), else from the Taylor coefficients of its error."""
-    size = local.size(limits)
-    if size is not None:
-        return size
-    step = step_series(action, local, m, order + ERROR_TERMS)
-    terms = range(order + 1, order + ERROR_TERMS + 1)
-    local.defects = tuple((k, length(local.trajectory[k - 1] - step.coefficient(k))) for k in terms)
-    return size_from_defects(local.defects, *limits)
 
 
 def judgement(limits: SizeLimits, local: LocalStep, m: Values, size: Lanes, axes: int = 0) -> tuple[Lanes, Lanes]:
