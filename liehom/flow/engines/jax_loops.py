@@ -290,7 +290,7 @@ def _code(point: JaxArray) -> JaxArray:
 Jaxpr: TypeAlias = Any  # a jaxpr, one of its operations or of their parameters; JAX has no public types for them
 Leaves: TypeAlias = list[JaxArray]  # a flat list of JAX arrays
 Compiled: TypeAlias = Callable[..., Any]  # a function that jax.jit compiles
-MAX_SHARED = 64  # number of compiled functions that engines share
+MAX_SHARED = 128  # number of compiled functions that engines share
 LONG_EQUATIONS = 150  # from which on XLA compiles gradients without its optimizations by LLVM, which take longest
 _SHARED: dict[tuple[str, Hashable], Any] = {}
 
