@@ -1,4 +1,4 @@
-"""Loops over steps under JAX: within a run of numpy, and on JAX arrays; the compiled functions that are kept."""
+"""Loops over steps under JAX, within a run of numpy and on JAX arrays, and the compiled functions that are kept."""
 
 from __future__ import annotations
 

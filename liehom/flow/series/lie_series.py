@@ -103,12 +103,9 @@ class Bilinear:
 
     def _contracted(self, subscripts: str, x: NumbersLike) -> npt.NDArray[Any]:
         factor = x if isinstance(x, Jet) else _values_of(x)
-        xp = np if isinstance(factor, Jet) else namespace(factor)
-        return xp.einsum(subscripts, factor, self._tensor_for(factor))
-
-    def _tensor_for(self, x: Jet | npt.NDArray[Any]) -> npt.NDArray[Any]:
-        value = x.value if isinstance(x, Jet) else x
-        return self._cached("tensor", value, lambda: self._filled(self._coefficients(value)))
+        xp, value = (np, factor.value) if isinstance(factor, Jet) else (namespace(factor), factor)
+        tensor = self._cached("tensor", value, lambda: self._filled(self._coefficients(value)))
+        return xp.einsum(subscripts, factor, tensor)
 
     def _filled(self, values: npt.NDArray[Any]) -> npt.NDArray[Any]:
         out = np.zeros(self.shape, dtype=values.dtype)
@@ -402,8 +399,8 @@ def _matrix_series(node: Node, weights: list[Fraction], one: bool) -> Jet:
 def magnus(bracket: Bracket, a: Jet) -> Jet:
     """x(t) with x(0) = 0 such that exp(x(t)) solves Y' = a Y, Y(0) = 1: x' = dexp_x^-1 a, with a bracket as for `dexp`.
 
-    The series a may be growing: coefficient k + 1 of the result, which is of one order more, needs a up to coefficient
-    k. In Taylor coefficients x_1 = a_0, x_2 = a_1 / 2, x_3 = a_2 / 3 + [a_1, a_0] / 12.
+    The series a may be growing: coefficient k + 1 of the result needs a up to coefficient k. The order of the result is
+    that of a, plus 1. In Taylor coefficients x_1 = a_0, x_2 = a_1 / 2, x_3 = a_2 / 3 + [a_1, a_0] / 12.
 
     Examples
     --------
@@ -474,14 +471,14 @@ def _velocity(bracket: Bracket, x: NumbersLike, order: int, sign: int) -> Node:
         value = as_values(x)
         return Node(order, zeros(value, value.shape), [None, value, *[None] * (order - 1)])
     node = without_constant(x, check=True).node
-    moving = Node(node.order, node.value, [None], ((node, 0),), lambda k: _times(k, node.known[k]))
+
+    def rule(k: int) -> Coefficient:
+        return None if node.known[k] is None else k * node.known[k]
+
+    moving = Node(node.order, node.value, [None], ((node, 0),), rule)
     weights = [Fraction(sign**k, factorial(k + 1)) for k in range(order)]
     velocity: Any = _series_in_ad(bracket, Jet.from_node(node), Jet.from_node(moving), weights)
     return velocity.node
-
-
-def _times(k: int, x: Values) -> Coefficient:
-    return None if x is None else k * x
 
 
 # -- what the series need of their arguments -----------------------------------------------------------------

@@ -103,25 +103,28 @@ class Sizes:
 class StepGraph:
     """Graph of a traced step: inputs 0..N-1 are the point, N the time, N + 1 the step size, -1, -2, ... constants.
 
-    Input N + 2 is the time of the next stop, if the graph knows of stops. The run records the largest value of the
-    numbers in `largest`, which is -inf before the first step, and the sum of those in `summed`, over the steps taken.
-    The name "-x" stands for the negative of a number x of which the smallest value is recorded.
+    Input N + 2 is the time of the next stop, if the graph knows of stops; else `reached` and `tried` are None. The run
+    records the largest value of the numbers in `largest`, which is -inf before the first step, and the sum of those in
+    `summed`, over the steps taken. The name "-x" stands for the negative of a number x of which the smallest value is
+    recorded. Booleans that always hold are None.
     """
 
     point: list[Expr]  # coordinates of the point after the step, or at the stop
     elapsed: Expr | None  # time that passes in the whole step; None if it is the step size
-    ordinary: Expr | None  # boolean: clock certainly admissible and all equations solved; None if it always is so
+    ordinary: Expr | None  # boolean, whether the clock is certainly admissible and all equations were solved
     largest: dict[str, Expr]
     summed: dict[str, Expr]
     constant_functions: tuple[TrajectoryConstant, ...] = ()  # inputs -1, -2, ... as functions of initial points (L, N)
     clock: tuple[tuple[int, Expr], ...] = ()  # (k, c_k): the time h + c_2 h^2 + ... passes in a step of size h
-    solved: Expr | None = None  # boolean: whether all equations were solved; None if there are none
-    sizes: Sizes | None = None  # None if the step size is fixed
-    calls: int | None = 0  # of psi in a step; None if their number depends on values: `summed["calls"]` counts them
-    reached: Expr | None = None  # boolean: whether the stop is within the step; None if the graph knows of no stops
+    solved: Expr | None = None  # boolean, whether all equations were solved
+    sizes: Sizes | None = None  # of steps of adaptive sizes
+    calls: int | None = (
+        0  # of psi in a step, or None if their number depends on values and `summed["calls"]` counts them
+    )
+    reached: Expr | None = None  # boolean, whether the stop is within the step
     tried: Expr | None = None  # signed size of the step, to the stop if it is reached
-    first: Expr | None = None  # size of the first step, without sign, if none is proposed; by point and time
-    guard: Expr | None = None  # boolean: whether a run may begin at the initial point; None if it may
+    first: Expr | None = None  # size of the first step, without sign, if none is proposed: a function of point and time
+    guard: Expr | None = None  # boolean, whether a run may begin at the initial point
 
     @property
     def size(self) -> int:
