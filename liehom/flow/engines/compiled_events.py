@@ -266,8 +266,7 @@ def _truncated(
         sizes[r + 1 :, k] = 0
     halted = rows >= 0
     going, done = all_of.going & ~halted, all_of.done & ~halted
-    if run.state.samples is not None:
-        until[halted] = times_until(run, t[halted])
+    until[halted] = times_until(run, t[halted])
     return all_of._replace(
         m=m, t=t, taken=taken, going=going, done=done, until=until, path=(times, points, sizes), halted=rows
     )
