@@ -259,8 +259,6 @@ def method(jet: Jet, name: str) -> Callable[..., Any]:
 def _method(jet: Jet, name: str, *args: object, **options: object) -> Any:
     if name in ("reshape", "transpose") and len(args) > 1:
         args = (args,)
-    elif name == "transpose" and args == (None,):
-        args = ()
     return getattr(np, name)(jet, *args, **options)
 
 

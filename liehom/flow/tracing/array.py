@@ -257,8 +257,6 @@ def _is_foreign(x: object) -> bool:
 def _method(x: Traced, name: str, *args: Operand, **options: Operand) -> Operand:
     if name == "astype":
         return _converted(x, *args, **options)
-    if name == "copy":
-        return Traced(x.tape, x.entries.copy())
     if name in ("reshape", "transpose") and len(args) > 1:
         args = (args,)
     if name == "item":
