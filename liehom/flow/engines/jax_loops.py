@@ -56,7 +56,7 @@ class JaxKernel(Kernel):
     """The run of a traced step as a jitted loop over steps, all lanes at once, each with its own sizes and times."""
 
     engine = "jax"
-    in_lockstep, has_prologue, cost = False, False, 16  # cost on the CPU
+    in_lockstep, _has_prologue, cost = False, False, 16  # cost on the CPU
     # XLA compiles operations one by one in a time that grows with the square of their number
     tracing: ClassVar[dict[str, Any]] = {"branching": False, "unrolled": 4000}
 

@@ -158,7 +158,7 @@ class Kernel:
     engine: ClassVar[str] = "llvm"  # as reports name it
     in_lockstep: ClassVar[bool] = True  # whether lanes make steps of one size together, without stops of their own
     tracing: ClassVar[dict[str, Any]] = {}  # options of a trace
-    has_prologue: ClassVar[bool] = True  # whether it computes constants of the trajectories
+    _has_prologue: ClassVar[bool] = True  # whether it computes constants of the trajectories
     cost: ClassVar[int] = 1  # duration of an operation, in units of one of machine code
 
     def __init__(self, graph: StepGraph, width: int) -> None:
@@ -178,7 +178,7 @@ class Kernel:
         if isinstance(function, RunConstant):
             self.run_constants.append(function.name)
             return "run", len(self.run_constants) - 1
-        if self.has_prologue and not isinstance(function, LaneConstant):
+        if self._has_prologue and not isinstance(function, LaneConstant):
             traced = _on_tracers(function, self.graph)
             if traced is not None:
                 return traced
