@@ -71,7 +71,7 @@ ORDER: dict[str, list[str]] = {
         ),
         "liehom.flow.convergence": "reference orders costs",
         "liehom.flow.engines": (
-            "engine arguments traced_step lanes compiled_events jax_kernel jax_loops lattice plan llvm_engine "
+            "engine arguments traced_step lanes compiled_events jax_loops lattice plan llvm_engine "
             "jax_engine auto_engine sensitivity"
         ),
         "liehom.flow.methods": "midpoint composition runge_kutta tableaux rkmk low_order stiff stability taylor named",

@@ -78,3 +78,15 @@ def place_of(name: str) -> str:
             return f"; it is in liehom.{module}: from liehom import {module}"
     near = get_close_matches(name, modules, n=1, cutoff=0.75)
     return f"; did you mean {near[0]!r}?" if near else ""
+
+
+class Module:
+    """A module that is imported when a name of it is first used."""
+
+    def __init__(self, name: str) -> None:
+        self._name = name
+
+    def __getattr__(self, name: str) -> object:
+        value: object = getattr(importlib.import_module(self._name), name)
+        setattr(self, name, value)
+        return value

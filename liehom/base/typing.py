@@ -145,5 +145,8 @@ Expression: TypeAlias = Any
 ValuesLike: TypeAlias = "Values | npt.ArrayLike"
 """`Values`, or what numpy converts to an array."""
 
+Lanes: TypeAlias = Any
+"""Numbers (...,) or points (..., N) of trajectories of whatever kind a step runs on: numpy, tracers, JAX."""
+
 Real: TypeAlias = "float | Values"
 """A real number, or one per trajectory: a time, a step size."""

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 import liehom as lh
-from liehom.flow.engines.jax_kernel import enabled_x64
+from liehom.flow.engines.jax_loops import enabled_x64
 from liehom.flow.engines.traced_step import traced_step
 from liehom.flow.tracing.graph import needed
 from tests.benchmarks.integration_methods import jitted

@@ -135,7 +135,7 @@ def under_jit(name: str) -> Solve:
     """A step of the library under ``jax.jit``, for spins that act on each other."""
 
     def solve(problem: Problem, starts: Any, span: float, setting: float, samples: int) -> Any:
-        from liehom.flow.engines.jax_kernel import enabled_x64
+        from liehom.flow.engines.jax_loops import enabled_x64
 
         steps = max(1, round(span / samples / setting))
         with enabled_x64():

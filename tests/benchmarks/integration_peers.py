@@ -155,7 +155,7 @@ def _diffrax_run(problem: Problem, method: str, samples: int) -> Any:
 
 def _diffrax(method: str) -> Solve:
     def solve(problem: Problem, starts: Any, span: float, setting: float, samples: int) -> Any:
-        from liehom.flow.engines.jax_kernel import enabled_x64
+        from liehom.flow.engines.jax_loops import enabled_x64
 
         with enabled_x64():
             made = _diffrax_run(problem, method, samples)(starts, sample_times(span, samples), setting)

@@ -18,7 +18,7 @@ from liehom.flow.engines.engine import Problem
 from liehom.flow.engines.lanes import LaneSteps, Memory, times_until
 from liehom.flow.engines.traced_step import all_of, arg_values, args_of_lanes, traced_args, with_traced_frame
 from liehom.flow.run.events import Events, Look
-from liehom.flow.run.records import EventLog
+from liehom.flow.run.records import EventLog, Occurrence, occurrences_of
 from liehom.flow.run.run import Run, StepProposal
 from liehom.flow.steps.step import Generator, Step, length
 from liehom.flow.tracing.array import Traced
@@ -26,94 +26,19 @@ from liehom.flow.tracing.graph import LaneConstant, RunConstant, Tape, Trajector
 from liehom.flow.tracing.loop import StepGraph
 from liehom.flow.tracing.machine import PLACES, Kernel, lanes_per_register, padded
 
-# Event functions on any number of points of a run, also those that take only what an eager run gives them. An event
-# function is called with all points at once if that gives, at some points, what it gives for them in the form of the
-# run: a point (N,), or the whole ensemble (..., N). Others are called in that form, as often as needed.
-
 FAILURES = (LiehomError, TypeError, ValueError, IndexError, KeyError, ArithmeticError)
 """What functions raise that were not written for this number of points."""
 RTOL = 1e-9
-NEAR = 1e-3
-
-
-@final
-class EventValues:
-    """The event functions of a run at pairs (t, y); trials on other trajectories say which take all pairs `at_once`."""
-
-    def __init__(self, run: Run) -> None:
-        events: Any = run.stops.events
-        self.events: Events = events
-        self.run = run
-        self.start = run.start.reshape(-1, run.start.shape[-1])
-        lanes, size = self.start.shape
-        some = np.arange(max(lanes, size) + 1)[::-1] if lanes else np.zeros(0, dtype=int)
-        self.trial_lanes: IntegerArray = some % max(lanes, 1)
-        points = self.start[self.trial_lanes]
-        if not run.shape:  # points that differ, as those of an ensemble do
-            points = points * (1 + NEAR * np.random.default_rng(0).normal(size=points.shape))
-        self.trial_points: Array = points
-        begin = np.full(len(self.trial_lanes), float(run.span[0]))
-        self.at_once = [True] * events.count
-        at_once = self.of(self.trial_lanes)
-        for i in range(events.count):
-            self.checked(i, at_once, begin, points, self.trial_lanes, len(begin))
-
-    def of(self, lanes: IntegerArray) -> Events:
-        """The event functions of pairs t (p,), y (p, N) of these trajectories."""
-        functions: Any = self.run.options.events
-        events = Events(functions, args_of_lanes(self.run.field.args, self.run.shape, lanes))
-        events.functions = [
-            function if self.at_once[i] else partial(self._in_turn, i, lanes)
-            for i, function in enumerate(events.functions)
-        ]
-        return events
-
-    def checked(self, i: int, events: Events, t: Array, y: Array, lanes: IntegerArray, some: int = 1) -> Array:
-        """g_i at pairs; at the last ones it is compared with the function in the form of the run."""
-        if self.at_once[i]:
-            try:
-                values = events.value(i, t, y)
-                there = slice(len(t) - some, None)
-                wanted = self._in_turn(i, lanes[there], t[there], y[there])
-                if np.allclose(
-                    values[there], wanted, rtol=RTOL, atol=RTOL * float(np.abs(wanted).max()), equal_nan=True
-                ):
-                    return values
-            except FAILURES:
-                pass
-            self.at_once[i] = False
-        return self._in_turn(i, lanes, t, y)
-
-    def _in_turn(self, i: int, lanes: IntegerArray, t: Array, y: Array) -> Array:
-        """g_i by calls in the form of the run; trajectories without a pair are at their initial points."""
-        shape = self.run.shape
-        if not shape:
-            return np.array([float(self.events.value(i, time, point)) for time, point in zip(t, y, strict=True)])
-        values: Array = np.empty(len(t))
-        for here in _rounds(lanes):
-            times, points = np.full(len(self.start), float(self.run.span[0])), self.start.copy()
-            times[lanes[here]], points[lanes[here]] = t[here], y[here]
-            value = self.events.value(i, times.reshape(shape), points.reshape(*shape, -1))
-            values[here] = value.reshape(-1)[lanes[here]]
-        return values
-
-
-def _rounds(lanes: IntegerArray) -> list[IntegerArray]:
-    """Indices of pairs in groups, in each of which a trajectory has at most one pair."""
-    if not len(lanes):
-        return []
-    order = np.argsort(lanes, kind="stable")
-    ordered = lanes[order]
-    begins = np.append(True, ordered[1:] != ordered[:-1])
-    rank = np.arange(len(lanes)) - np.maximum.accumulate(np.where(begins, np.arange(len(lanes)), 0))
-    by_rank = np.argsort(rank, kind="stable")
-    return [order[group] for group in np.split(by_rank, np.flatnonzero(np.diff(rank[by_rank])) + 1)]
+NEAR = 1e-3  # relative distance of trial points
 
 
 # Events of compiled runs: machine code makes the steps of a call, then events are sought in all of them at once. Event
 # functions are evaluated at the ends of all steps of all lanes. The steps in which a zero is possible, by the rules of
 # `liehom.flow.run.events`, are made again in numpy from their stored starts, and the zeros are located on their dense
 # output. A terminal event truncates what the machine code has made of its lane.
+#
+# An event function is called with all points at once if that gives, at some points, what it gives for them in the form
+# of the run: a point (N,), or the whole ensemble (..., N). Others are called in that form, as often as needed.
 
 STEPS_AT_ONCE = 16_384  # steps that are made again at once, at most
 ROOT_EPS = float(np.sqrt(np.finfo(np.float64).eps))
@@ -133,28 +58,24 @@ class Steps(NamedTuple):
     first: BooleanArray  # whether it is the first one of its lane
 
 
-class Occurrence(NamedTuple):
-    """A zero of event function `event` at the size |s| within step number `step`, at (t, y)."""
-
-    step: int
-    distance: float
-    event: int
-    s: float
-    t: Any
-    y: Any
-    counted: bool
-
-
 @final
 class EventSearch:
     """Looks for the events of a run in steps that a kernel has made."""
 
     def __init__(self, run: Run) -> None:
-        self.run = run
-        self.values = EventValues(run)
+        self.run, self.events = run, run.stops.events or Events([])
         self.start = run.start.reshape(-1, run.start.shape[-1])
         self.dimensions = np.broadcast_to(np.asarray(run.psi.orbit_dimension), run.shape).reshape(-1)
-        self.psi_at_once = not len(self.start) or self._psi_works_at_once()
+        lanes, size = self.start.shape
+        some = np.arange(max(lanes, size) + 1)[::-1] if lanes else np.zeros(0, dtype=int)
+        trial: IntegerArray = some % max(lanes, 1)
+        points = self.start[trial]
+        if not run.shape:  # points that differ, as those of an ensemble do
+            points = points * (1 + NEAR * np.random.default_rng(0).normal(size=points.shape))
+        self.at_once = [True] * self.events.count
+        for i in range(self.events.count):
+            self.checked(i, np.full(len(trial), float(run.span[0])), points, trial, len(trial))
+        self.psi_at_once = not lanes or self._psi_works_at_once(trial, points)
         if not self.psi_at_once and run.shape:
             raise InputError(
                 "engine='llvm' looks for events by calls of psi for some trajectories of the ensemble, and this psi "
@@ -164,12 +85,11 @@ class EventSearch:
     @property
     def ends_runs(self) -> bool:
         """Whether an event is terminal."""
-        return bool(np.isfinite(self.values.events.terminal).any())
+        return bool(np.isfinite(self.events.terminal).any())
 
-    def _psi_works_at_once(self) -> bool:
+    def _psi_works_at_once(self, lanes: IntegerArray, points: Array) -> bool:
         """Whether psi takes more points than there are trajectories, as arrays (..., N)."""
-        lanes, points, field = self.values.trial_lanes, self.values.trial_points, self.run.field
-        begin, shape = float(self.run.span[0]), self.run.shape
+        field, begin, shape = self.run.field, float(self.run.span[0]), self.run.shape
         try:
             values = np.asarray(self._field(lanes).psi(points, np.full(len(lanes), begin)))
             if shape:
@@ -183,8 +103,41 @@ class EventSearch:
 
     def _field(self, lanes: IntegerArray) -> GeneratorField:
         """The field, with args of these lanes."""
-        args = self.run.field.args
-        return self.run.field if args is None else self.run.field.with_args(args_of_lanes(args, self.run.shape, lanes))
+        args = args_of_lanes(self.run.field.args, self.run.shape, lanes)
+        return self.run.field if args is None else self.run.field.with_args(args)
+
+    def of(self, lanes: IntegerArray) -> Events:
+        """The event functions of pairs t (p,), y (p, N) of these trajectories."""
+        events = Events(self.run.options.events or [], args_of_lanes(self.run.field.args, self.run.shape, lanes))
+        events.functions = [
+            function if self.at_once[i] else partial(self._in_turn, i, lanes)
+            for i, function in enumerate(events.functions)
+        ]
+        return events
+
+    def checked(self, i: int, t: Array, y: Array, lanes: IntegerArray, some: int = 1) -> Array:
+        """g_i at pairs; at the last ones it is compared with the function in the form of the run."""
+        if self.at_once[i]:
+            with suppress(*FAILURES):
+                values, there = self.of(lanes).value(i, t, y), slice(len(t) - some, None)
+                wanted = self._in_turn(i, lanes[there], t[there], y[there])
+                if np.allclose(values[there], wanted, RTOL, RTOL * float(np.abs(wanted).max()), equal_nan=True):
+                    return values
+            self.at_once[i] = False
+        return self._in_turn(i, lanes, t, y)
+
+    def _in_turn(self, i: int, lanes: IntegerArray, t: Array, y: Array) -> Array:
+        """g_i by calls in the form of the run; trajectories without a pair are at their initial points."""
+        shape = self.run.shape
+        if not shape:
+            return np.array([float(self.events.value(i, time, point)) for time, point in zip(t, y, strict=True)])
+        values: Array = np.empty(len(t))
+        for here in _rounds(lanes):
+            times, points = np.full(len(self.start), float(self.run.span[0])), self.start.copy()
+            times[lanes[here]], points[lanes[here]] = t[here], y[here]
+            value = self.events.value(i, times.reshape(shape), points.reshape(*shape, -1))
+            values[here] = value.reshape(-1)[lanes[here]]
+        return values
 
     # -- the search --------------------------------------------------------------------------------------
     def __call__(self, lanes: IntegerArray, before: tuple[Array, Array, IntegerArray], done: LaneSteps) -> LaneSteps:
@@ -192,31 +145,22 @@ class EventSearch:
         steps = _listed(lanes, before, done)
         if not len(steps.row):
             return done
-        events, count = self.values.of(steps.lane), self.values.events.count
-        starts, ends = [], []
-        now = self.run.state
-        for i in range(count):
-            end = self.values.checked(i, events, steps.after, steps.reached, steps.lane)
-            start = np.concatenate([end[:1], end[:-1]])
-            start[steps.first] = now.event_values[i].reshape(-1)[steps.lane[steps.first]]
-            starts.append(start)
-            ends.append(end)
-        fresh = steps.first & (before[2][steps.column] == 0)
+        events, values = self.events, []
+        fresh, last = steps.first & (before[2][steps.column] == 0), np.append(steps.first[1:], True)
         occurrences: list[Occurrence] = []
-        events = self.values.of(steps.lane)
-        for i in range(count):
-            possible = events.crossed(i, starts[i], ends[i]) | self._turns(i, steps, starts[i], ends[i])
-            for p in np.flatnonzero(fresh & events.left(i, starts[i], ends[i])):
-                occurrences.append(Occurrence(int(p), 0.0, i, 0.0, steps.t[p], steps.m[p], counted=False))
-            chosen = np.flatnonzero(possible)
+        for i, known in enumerate(self.run.state.event_values):
+            end = self.checked(i, steps.after, steps.reached, steps.lane)
+            start, now = np.concatenate([end[:1], end[:-1]]), np.array(known).reshape(-1)
+            start[steps.first] = now[steps.lane[steps.first]]
+            now[steps.lane[last]] = end[last]
+            values.append(now.reshape(self.run.shape))
+            for p in np.flatnonzero(fresh & events.left(i, start, end)):
+                occurrences.append(Occurrence(int(p), 0.0, i, int(steps.lane[p]), 0.0, steps.t[p], steps.m[p], False))
+            chosen = np.flatnonzero(events.crossed(i, start, end) | self._turns(i, steps, start, end))
             for k in range(0, len(chosen), STEPS_AT_ONCE):
-                occurrences += self._located(i, steps, chosen[k : k + STEPS_AT_ONCE], starts[i], ends[i])
-        last = np.append(steps.first[1:], True)
-        for i in range(count):
-            new = np.array(now.event_values[i]).reshape(-1)
-            new[steps.lane[last]] = ends[i][last]
-            now.event_values = [new.reshape(self.run.shape) if k == i else g for k, g in enumerate(now.event_values)]
-        halts = self._recorded(steps, sorted(occurrences, key=lambda x: x[:3]))
+                occurrences += self._located(i, steps, chosen[k : k + STEPS_AT_ONCE], start, end)
+        self.run.state.event_values = values
+        halts = self.run.state.event_log.record(occurrences, events.terminal)
         return _truncated(self.run, steps, before[2], halts, done) if halts else done
 
     def _turns(self, i: int, steps: Steps, start: Array, end: Array) -> BooleanArray:
@@ -224,21 +168,17 @@ class EventSearch:
         sign = np.sign(start)
         turns: BooleanArray = np.zeros(len(sign), dtype=bool)
         some = np.flatnonzero(sign * end > 0)
-        leaves = sign[some] * self._slopes(
-            i, some, steps.lane[some], steps.after[some], steps.reached[some], end[some], -1
-        )
-        some = some[leaves > 0]
-        leaves = sign[some] * self._slopes(i, some, steps.lane[some], steps.t[some], steps.m[some], start[some], 1)
-        turns[some[leaves < 0]] = True
+        for t, y, value, inwards in ((steps.after, steps.reached, end, -1), (steps.t, steps.m, start, 1)):
+            slopes = self._slopes(i, steps.lane[some], t[some], y[some], value[some], inwards)
+            some = some[inwards * sign[some] * slopes < 0]
+        turns[some] = True
         return turns
 
-    def _slopes(
-        self, i: int, some: IntegerArray, lanes: IntegerArray, t: Array, y: Array, value: Array, inwards: int
-    ) -> Array:
+    def _slopes(self, i: int, lanes: IntegerArray, t: Array, y: Array, value: Array, inwards: int) -> Array:
         """Derivatives of g_i at places (t, y) of lanes, in the direction of integration (see `Look.slope`)."""
-        if not len(some):
+        if not len(lanes):
             return np.zeros(0)
-        field, events = self._field(lanes), self.values.of(lanes)
+        field, events = self._field(lanes), self.of(lanes)
         if self.psi_at_once:
             vector = np.asarray(field.vector(y, t))
         else:
@@ -266,7 +206,7 @@ class EventSearch:
     ) -> list[Occurrence]:  # fmt: skip
         """The zeros of g_i in the steps of numbers `chosen`; `where` is the same, or one number without an axis."""
         run, lanes = self.run, steps.lane[chosen]
-        events = self.values.events if np.ndim(where) == 0 else self.values.of(lanes)
+        events = self.events if np.ndim(where) == 0 else self.of(lanes)
         field = self._field(lanes)
         own = self.start[steps.lane[where]]
         psi = Generator(field, self.dimensions[steps.lane[where]], own)
@@ -283,30 +223,17 @@ class EventSearch:
         look = Look(step.position, slope, h, (t, m), (after, reached), yes)
         occurrences: list[Occurrence] = []
         for here, s in events.zeros(i, look, start[where], end[where]):
-            times, points = step.position(np.where(here, s, 0))
-            flat = [np.reshape(x, len(chosen)) for x in (here, s, times)]
-            rows = np.reshape(points, (len(chosen), -1))
-            for k in np.flatnonzero(flat[0]):
-                size = float(flat[1][k])
-                occurrences.append(Occurrence(int(chosen[k]), abs(size), i, size, flat[2][k], rows[k], counted=True))
-        return occurrences
+            occurrences += occurrences_of(i, here, s, *step.position(np.where(here, s, 0)))
+        return [x._replace(step=int(chosen[x.lane]), lane=int(lanes[x.lane])) for x in occurrences]
 
-    def _recorded(self, steps: Steps, occurrences: list[Occurrence]) -> Mapping[int, Occurrence]:
-        """Record occurrences, in order of time in each lane, up to the terminal ones, which are returned by lane."""
-        log, halts = self.run.state.event_log, dict[int, Occurrence]()
-        counts = np.array(log.occurrences)
-        flat, terminal = counts.reshape(len(counts), -1), self.values.events.terminal
-        for x in occurrences:
-            lane = int(steps.lane[x.step])
-            halt = halts.get(lane)
-            if halt is not None and (x.step, x.distance) > (halt.step, halt.distance):
-                continue
-            log.rows.append((x.event, lane, x.t, x.y))
-            flat[x.event, lane] += x.counted
-            if x.counted and flat[x.event, lane] >= terminal[x.event]:
-                halts.setdefault(lane, x)
-        log.occurrences = counts
-        return halts
+
+def _rounds(lanes: IntegerArray) -> list[IntegerArray]:
+    """Indices of pairs in groups, in each of which a trajectory has at most one pair."""
+    if not len(lanes):
+        return []
+    order, rank = np.argsort(lanes, kind="stable"), np.empty(len(lanes), dtype=int)
+    rank[order] = np.arange(len(lanes)) - np.searchsorted(lanes[order], lanes[order])
+    return np.split(np.argsort(rank, kind="stable"), np.cumsum(np.bincount(rank))[:-1])
 
 
 def _listed(lanes: IntegerArray, before: tuple[Array, Array, IntegerArray], done: LaneSteps) -> Steps:
@@ -339,8 +266,7 @@ def _truncated(
         sizes[r + 1 :, k] = 0
     halted = rows >= 0
     going, done = all_of.going & ~halted, all_of.done & ~halted
-    if run.state.samples is not None:
-        until[halted] = times_until(run, t[halted])
+    until[halted] = times_until(run, t[halted])
     return all_of._replace(
         m=m, t=t, taken=taken, going=going, done=done, until=until, path=(times, points, sizes), halted=rows
     )
@@ -422,10 +348,9 @@ class PlannedEvents:
 
     def __init__(self, problem: Problem, step: Step, dimension: int) -> None:
         self.problem, self.step, self.dimension = problem, step, dimension
-        functions: Any = problem.options.events
         self.n, self.lead = np.shape(problem.start)[-1], np.ndim(problem.start) - 1
-        self.functions: Any = functions
-        self.events: Events = Events(functions, problem.args)
+        self.functions: Any = problem.options.events
+        self.events: Events = Events(self.functions or [], problem.args)
         self.parts = Parts(self.functions if isinstance(self.functions, list | tuple) else [self.functions])
         self.at_points = self._at_points()
         self.in_steps: dict[int, PointCode | None] = {}
@@ -433,7 +358,7 @@ class PlannedEvents:
     def _traced(self, tape: Tape) -> tuple[Any, Any, GeneratorField, Events]:
         """Point, time, field and events on a tape."""
         args, field = self.problem.args, self.problem.field
-        known = None if args is None else traced_args(tape, args, self.lead)
+        known = traced_args(tape, args, self.lead)
         m, t = Traced.inputs(tape, 0, self.n), Traced(tape, tape.input(self.n))
         return m, t, field if args is None else field.with_args(known), Events(self.functions, known)
 
@@ -451,16 +376,8 @@ class PlannedEvents:
         ]  # fmt: skip
         return PointCode(tape, self.n, self.n + 1, [*values, *slopes])
 
-    def _in_steps(self, i: int) -> PointCode | None:
-        """Code of the zeros of g_i in a step, from its point, time, size and end, and from values and slopes of g_i at
-        both ends; None if it cannot be compiled.
-        """
-        with suppress(*FAILURES):
-            return self._zeros_in_steps(i)
-        return None
-
-    def _zeros_in_steps(self, i: int) -> PointCode:
-        """The code itself."""
+    def _in_steps(self, i: int) -> PointCode:
+        """Code of the zeros of g_i in a step, from its point, time, size, end, and values and slopes at both ends."""
         p, n, tape = self.problem, self.n, Tape()
         m, t, field, events = self._traced(tape)
         more: list[Any] = [Traced(tape, tape.input(n + k)) for k in range(1, 7)]
@@ -485,12 +402,9 @@ class PlannedEvents:
     def agrees(self, points: Array, times: Array) -> bool:
         """Whether the code has the values of the functions at points (..., N) of the run and times (...,)."""
         wanted = np.array(self.events.values(times, points)).reshape(self.events.count, -1)
-        args = self.problem.args
-        values = {"length": 1.0, "direction": 1.0, **({} if args is None else arg_values(args, self.lead))}
+        values = {"length": 1.0, "direction": 1.0, **arg_values(self.problem.args, self.lead)}
         made = self.at_points([*points.reshape(-1, self.n).T, times.reshape(-1)], values)
-        return bool(
-            np.allclose(made[: self.events.count], wanted, rtol=RTOL, atol=RTOL * np.abs(wanted).max(initial=0))
-        )
+        return np.allclose(made[: self.events.count], wanted, RTOL, RTOL * np.abs(wanted).max(initial=0))
 
     def __call__(self, path: Array, values: Mapping[str, Any], span: tuple[float, float]) -> EventLog | None:
         """The events on paths (j + 1, N + 2, L) of points, times and sizes. None if one may end a run."""
@@ -502,7 +416,7 @@ class PlannedEvents:
         if all((np.minimum.reduce(made, axis=1) * np.maximum.reduce(made, axis=1) > 0).tolist()):
             return log  # no value and no slope changes its sign
         g, ahead, back = made.reshape(3, events.count, lanes, k)
-        rows: list[tuple[int, int, float, int, Any, Array, bool]] = []
+        occurrences: list[Occurrence] = []
         starts, ends = g[..., :-1], g[..., 1:]
         same = starts * ends > 0
         turning = same & (starts * back[..., 1:] > 0) & (starts * ahead[..., :-1] < 0)
@@ -510,12 +424,14 @@ class PlannedEvents:
         for i in range(events.count):
             start, end, turns = starts[i], ends[i], turning[i]
             for lane in np.flatnonzero(events.left(i, start[:, 0], end[:, 0])).tolist():
-                rows.append((lane, 0, 0.0, i, t[lane, 0], y[lane, :, 0].copy(), False))
+                occurrences.append(Occurrence(0, 0.0, i, lane, 0.0, t[lane, 0], y[lane, :, 0].copy(), False))
             some = (turns | events.crossed(i, start, end)).nonzero()
             if not len(some[0]):
                 continue
             if i not in self.in_steps:
-                self.in_steps[i] = self._in_steps(i)
+                self.in_steps[i] = None  # of what cannot be compiled
+                with suppress(*FAILURES):
+                    self.in_steps[i] = self._in_steps(i)
             locate, (b, j) = self.in_steps[i], some
             if locate is None:
                 return None
@@ -524,15 +440,9 @@ class PlannedEvents:
             if np.isnan(zeros).any():
                 return None
             for here, s, time, *point in zeros.reshape(2, n + 3, -1):
-                rows += [
-                    (int(b[p]), int(j[p]), abs(float(s[p])), i, time[p], np.array([x[p] for x in point]), True)
-                    for p in np.flatnonzero(here)
-                ]
-        log.rows = [(i, b, time, point) for b, _, _, i, time, point, _ in sorted(rows, key=lambda row: row[:4])]
-        counts = np.zeros((events.count, lanes))
-        for b, _, _, i, _, _, counted in rows:
-            counts[i, b] += counted
-        return None if (counts >= np.array(events.terminal)[:, None]).any() else log
+                found = occurrences_of(i, here, s, time, np.transpose(point))
+                occurrences += [x._replace(step=int(j[x.lane]), lane=int(b[x.lane])) for x in found]
+        return None if log.record(occurrences, events.terminal) else log
 
 
 def planned_events(problem: Problem, step: Step, dimension: int, made: Array) -> PlannedEvents | None:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Hashable, Sequence
 from contextlib import nullcontext, suppress
 from dataclasses import replace
 from math import ceil
-from typing import Any, NamedTuple, final
+from typing import Any, TypeAlias, final
 
 import numpy as np
 from numpy.typing import DTypeLike
@@ -18,16 +18,15 @@ from liehom.flow.action.field import GeneratorField
 from liehom.flow.action.fingerprint import Watch, parts_of
 from liehom.flow.action.space import tight_frame
 from liehom.flow.engines.engine import Problem, executed
-from liehom.flow.engines.jax_kernel import JaxKernel, enabled_x64
 from liehom.flow.engines.jax_loops import (
     ArrayStep,
     At,
     GraphStep,
+    JaxKernel,
     Leaves,
     Program,
-    StepOnJax,
-    bound_step,
     chosen,
+    enabled_x64,
     is_float,
     with_adaptive_sizes,
     with_given_sizes,
@@ -37,22 +36,22 @@ from liehom.flow.engines.traced_step import args_form, traced_step
 from liehom.flow.run.check import gap_of
 from liehom.flow.run.control import ERROR_TERMS, SLACK, SizeLimits
 from liehom.flow.run.options import END, ORDER_NOT_KEPT, outcome
-from liehom.flow.run.records import Report, loss_of_order
+from liehom.flow.run.records import Report, StepStatistics, loss_of_order
 from liehom.flow.run.solution import Solution
 from liehom.flow.series.arrays import is_jax, is_traced, namespace
 from liehom.flow.steps.conserving import Conserving
 from liehom.flow.tracing.graph import needed
 from liehom.flow.tracing.loop import StepGraph
-from liehom.flow.tracing.sweeps import JaxArray
+from liehom.flow.tracing.sweeps import JaxArray, jax, jnp
+
+StepOnJax: TypeAlias = ArrayStep | GraphStep
 
 # The choice between the two forms of a step on JAX arrays, a scalar graph or array code. XLA compiles a graph of n
 # operations in a time that grows like n^2, on one core about 0.2 s for 600, 2 s for 1600 and 20 s for 6000. Array code
 # of the same steps takes 0.4 s to 1 s. Once compiled, short graphs are 3 to 10 times faster.
 
-MAX_GRAPH_OPERATIONS = 700
-"""Scalar graphs of at most so many operations are compiled as graphs, longer ones as array code."""
-MAX_GRAPH_ARGS = 100
-"""Steps with more numbers in args are compiled as array code: a graph has an operation for each of them."""
+MAX_GRAPH_OPERATIONS = 700  # of scalar graphs that are compiled as graphs, longer ones as array code
+MAX_GRAPH_ARGS = 100  # numbers in args; with more, each of which is an operation, steps are compiled as array code
 
 
 def step_for(problem: Problem, dimension: int, known: dict[Hashable, StepOnJax]) -> StepOnJax:
@@ -63,7 +62,9 @@ def step_for(problem: Problem, dimension: int, known: dict[Hashable, StepOnJax])
     numbers = sum(int(np.size(leaf.value)) for leaf in leaves(unwrapped(args)))
     if o.dt is None or numbers > MAX_GRAPH_ARGS or _closes_over_jax(problem.field.source):
         return array
-    points: Any = representative_points(problem.start, problem.field.representation.size)
+    n, traced = problem.field.representation.size, is_traced(problem.start)
+    start: Any = np.random.default_rng(0).normal(size=(16, n)) if traced else problem.start
+    points = np.asarray(start, dtype=np.float64).reshape(-1, n)
     tight = tight_frame(action, points, dimension) if step.uses_isotropy else None
     form = None if args is None else (lead, args_form(args, lead))
     key = dimension, form, None if tight is None else repr([np.asarray(x).tolist() for x in tight[:4]])
@@ -79,18 +80,9 @@ def step_for(problem: Problem, dimension: int, known: dict[Hashable, StepOnJax])
     return known[key]
 
 
-def representative_points(start: JaxArray, size: int) -> np.ndarray[Any, np.dtype[np.float64]]:
-    """Points (L, N) on which special properties of orbits are looked for: initial ones, or random if traced."""
-    if is_traced(start):
-        return np.random.default_rng(0).normal(size=(16, size))
-    return np.asarray(start, dtype=np.float64).reshape(-1, size)
-
-
 def _closes_over_jax(source: object) -> bool:
     """Whether a function uses JAX arrays of its surroundings; a graph would have their numbers in its operations."""
-    from jax import tree_util
-
-    return any(is_jax(x) for part in parts_of(source) for x in tree_util.tree_leaves(part))
+    return any(is_jax(x) for part in parts_of(source) for x in jax.tree.leaves(part))
 
 
 def _blank(args: Pytree) -> Pytree:
@@ -113,34 +105,20 @@ def _is_short(graph: StepGraph) -> bool:
 # The `Solution` of a call on JAX arrays, with a status for each trajectory as from numpy arrays.
 
 
-@final
-class Found(NamedTuple):
-    """Results of a loop over steps: points (k, ..., N), and arrays (...) as in `State`."""
+def solution_of(problem: Problem, dimension: int, times: JaxArray, results: Leaves) -> Solution:
+    """The solution, with JAX arrays for t, y and, for an ensemble or if JAX traces the call, `statuses`.
 
-    points: JaxArray
-    code: JaxArray
-    count: JaxArray
-    t: JaxArray
-    failed: JaxArray
-    near: JaxArray
-    lost: JaxArray
-
-
-def solution_of(problem: Problem, dimension: int, times: JaxArray, results: Found) -> Solution:
-    """The solution, with JAX arrays for t, y and, for an ensemble or if JAX traces the call, `statuses`."""
-    import jax
-    from jax import numpy as jnp
-
-    y: Any = jnp.moveaxis(results.points, 0, -1)
+    `results` are points (k, ..., N) and arrays (...) of a `State`: code, count, t, failed, near, lost.
+    """
     report = _report(problem, dimension)
-    code, lost, count, t = (jax.lax.stop_gradient(x) for x in (results.code, results.lost, results.count, results.t))
+    code, count, t, failed, near, lost = map(jax.lax.stop_gradient, results[1:])
     statuses: Any = jnp.where(code < 0, -1, jnp.where(jnp.isfinite(lost), ORDER_NOT_KEPT, 0))
     status, message = 0, "Traced by JAX: `statuses` is -1 for trajectories that failed; there y is nan."
     if not is_traced(code) and not is_traced(problem.span[0]):
         start, end = (np.asarray(jax.lax.stop_gradient(x)) for x in problem.span)
         direction = 1.0 if end >= start else -1.0
         first: Any = np.where(np.isfinite(lost), lost, np.nan)
-        failed, near = (int(np.sum(np.asarray(jax.lax.stop_gradient(x)))) for x in (results.failed, results.near))
+        failed, near = (int(np.sum(np.asarray(x))) for x in (failed, near))
         reason = loss_of_order(failed, near, report.base_order)
         ended = outcome(np.asarray(code), np.asarray(t), first, direction, problem.step.order, reason)
         status, message = ended.status, ended.message
@@ -149,23 +127,19 @@ def solution_of(problem: Problem, dimension: int, times: JaxArray, results: Foun
             order = report.base_order
             report = replace(report, order=order, failed_steps=failed, near_steps=near, unkept_from=unkept)
         report = replace(report, stopped_at=ended.stopped_at)
-    alone = results.code.ndim == 0 and not is_traced(code)
+    alone = code.ndim == 0 and not is_traced(code)
     return Solution(
-        t=times, y=y, sol=None, t_events=None, y_events=None, nfev=0, status=status, message=message,
-        n_steps=count + (code == END), report=report, statuses=status if alone else statuses,
+        t=times, y=jnp.moveaxis(results[0], 0, -1), sol=None, t_events=None, y_events=None, nfev=0, status=status,
+        message=message, n_steps=count + (code == END), report=report, statuses=status if alone else statuses,
     )  # fmt: skip
 
 
 def _report(problem: Problem, dimension: int) -> Report:
     """The report that repeats the options; the order that is reached is not known while JAX traces."""
-    step = problem.step
-    return Report(
-        step=repr(step), exponential=problem.action.exponential.name, clock=problem.options.clock,
-        base_order=step.base_order, order=step.order, wanted_order=step.order, worst_residual=float("nan"),
-        singular_value=float("nan"), singular_at=None, rank=dimension, orbit_dimension=dimension, failed_steps=0,
-        equilibria=0, inner_product=problem.action.inner_product.name,
-        check=problem.options.check(problem.field.time_dependent), engine="jax",
-    )  # fmt: skip
+    o, record = problem.options, StepStatistics(problem.step, ())
+    check = o.check(problem.field.time_dependent)
+    report = record.report(problem.action, o.clock, dimension, check=check, engine="jax")
+    return replace(report, worst_residual=float("nan"), singular_value=float("nan"), rank=dimension)
 
 
 # The engine "jax": numpy arrays by `Run` with compiled steps, JAX arrays by loops that JAX can transform. A
@@ -176,10 +150,8 @@ def _report(problem: Problem, dimension: int) -> Report:
 # * JAX traces the call (`jax.jit`, `jax.vmap`, `jax.jvp`): the loop with given sizes is part of that trace.
 
 STEPS_PER_NOMINAL_STEP = 1.5  # largest number of steps of a step with a time of its own, in units of the nominal number
-MAX_RECORDED = 1024
-"""Largest number of adaptive steps of a trajectory where JAX traces the call; `max_steps` may lower it."""
-FIRST_RECORDED = 128
-"""Sizes that are recorded at first where the numbers are known; the record is doubled until it is long enough."""
+MAX_RECORDED = 1024  # adaptive steps of a trajectory, at most, where JAX traces the call; `max_steps` may lower it
+FIRST_RECORDED = 128  # sizes that are recorded at first where the numbers are known; doubled until they are enough
 UNBOUNDED = 1_000_000  # a value of `max_steps` from which on it does not bound the length of a loop
 
 
@@ -203,11 +175,10 @@ class JaxEngine:
             if problem.options.events is not None:
                 raise InputError("engine='jax' does not look for events: take engine='llvm' or engine='numpy'")
             return executed(problem, lambda run: CompiledRun(problem, run, CodeStore(JaxKernel)))
-        start: Any = problem.start
         if self._watch is None or self._watch.changed():
             self._programs, self.steps = {}, {}
-            self._watch = Watch(problem.bound, start, problem.span[0])
-        with enabled_x64() if start.dtype == np.float64 else nullcontext():
+            self._watch = Watch(problem.bound, problem.start, problem.span[0])
+        with enabled_x64() if problem.start.dtype == np.float64 else nullcontext():
             return _Call(self, problem).solution()
 
     def program(self, key: Hashable, function: Callable[..., Sequence[JaxArray]], arguments: Leaves) -> Program:
@@ -221,8 +192,6 @@ class JaxEngine:
 
 def _lattice_of_numpy(engine: JaxEngine, problem: Problem) -> Solution:
     """The solution for lattices given as numpy arrays, by array code for whole lattices; all steps without t_eval."""
-    from jax import numpy as jnp
-
     o, start = problem.options, np.asarray(problem.start)
     times: Any = o.t_eval
     if times is None:
@@ -247,8 +216,6 @@ class _Call:
     """One call on JAX arrays."""
 
     def __init__(self, engine: JaxEngine, problem: Problem) -> None:
-        import jax
-
         o, start = problem.options, problem.start
         if o.events is not None or o.dense_output or o.checkpoint is not None:
             raise InputError(
@@ -282,7 +249,7 @@ class _Call:
             results = program.compiled()(program.constants, self._arguments(traced=True))
         else:
             results = self._forward(program)
-        return solution_of(self.problem, self.dimension, self.times, Found(*results[:7]))
+        return solution_of(self.problem, self.dimension, self.times, results[:7])
 
     @staticmethod
     def _is_reverse(values: Leaves) -> bool:
@@ -303,8 +270,6 @@ class _Call:
             results, sizes = self._adapted(leaves, recorded)
             if not traced:
                 return [*results, sizes]
-            import jax
-
             leaves = *leaves[:4], jax.lax.stop_gradient(sizes), *leaves[9:]
             return [self._looped(leaves, recorded + 1, table=True)[0], *results[1:]]
 
@@ -312,8 +277,6 @@ class _Call:
 
     def _given(self, table: JaxArray | None) -> Program:
         """The trace of the loop with given sizes: those of a table, or one for all steps."""
-        import jax
-
         if table is None:
             arguments, iterations = self.leaves, _rounded(self._nominal_number())
         else:
@@ -353,17 +316,13 @@ class _Call:
 
     # -- loops -------------------------------------------------------------------------------------------
     def _bound(self, start: JaxArray, args: Sequence[JaxArray]) -> tuple[GeneratorField, At]:
-        import jax
-
         field = self.problem.field
         if self.problem.args is not None:
             field = field.with_args(jax.tree.unflatten(self.args, list(args)))
-        return field, bound_step(self.step, field, start)
+        return field, lambda m, t: self.step.at(field, m, t, start)
 
     def _looped(self, leaves: Sequence[JaxArray], iterations: int, *, table: bool) -> list[JaxArray]:
         """Results of the loop with given sizes, for start, span, times, sizes and the leaves of args."""
-        from jax import numpy as jnp
-
         start, t0, t1, times, sizes, *args = leaves
         lead = start.shape[:-1]
         direction = jnp.where(t1 >= t0, 1.0, -1.0).astype(start.dtype)
@@ -383,9 +342,6 @@ class _Call:
 
     def _adapted(self, leaves: Sequence[JaxArray], recorded: int) -> tuple[list[JaxArray], JaxArray]:
         """Results of the loop with adaptive sizes, and these sizes (recorded, ...); no derivative passes through."""
-        import jax
-        from jax import numpy as jnp
-
         start, t0, t1, times, rtol, atol, max_step, first, most, *args = map(jax.lax.stop_gradient, leaves)
         direction: Any = jnp.where(t1 >= t0, 1.0, -1.0).astype(start.dtype)
         tiny: Any = 8 * float(np.finfo(start.dtype).eps) * jnp.maximum(jnp.abs(t0), jnp.abs(t1))
@@ -403,8 +359,6 @@ class _Call:
 
     def _differentiated(self) -> Leaves:
         """Results of a call that JAX differentiates in reverse: first the numbers, then, if wanted, the derivative."""
-        import jax
-
         values, table = self._forward_and_sizes()
         program = self._given(table)
         arguments = self.leaves if table is None else [*self.leaves[:4], table, *self.leaves[8:]]
@@ -452,8 +406,6 @@ def _array(x: JaxArray, dtype: DTypeLike | None = None) -> JaxArray:
 
 def _is_nested() -> bool:
     """Whether JAX traces all operations, as under jax.jit."""
-    from jax import numpy as jnp
-
     return is_traced(jnp.zeros(()))
 
 
@@ -464,15 +416,11 @@ def _is_linear(x: JaxArray) -> bool:
 def _known(x: JaxArray) -> JaxArray:
     """The numbers of an array, also while JAX differentiates it; None if they are not known."""
     if is_traced(x):
-        import jax
-
         x = jax.lax.stop_gradient(x)
     return None if is_traced(x) else np.asarray(x)
 
 
 def _concrete(values: Leaves) -> Leaves:
-    import jax
-
     return [jax.lax.stop_gradient(x) if is_traced(x) else x for x in values]
 
 
@@ -484,15 +432,11 @@ def _rounded(number: int) -> int:
 
 def _register_with_jax() -> None:
     """Make `PerTrajectory` a container for JAX, so that jax.grad, jax.jit and jax.vmap look into it."""
-    try:
-        import jax
-    except ImportError:
-        return  # the first run says what is missing
 
     def made(_: None, inside: tuple[Any, ...]) -> PerTrajectory:
         slices = object.__new__(PerTrajectory)  # JAX puts placeholders into containers
         (slices.value,) = inside
         return slices
 
-    with suppress(ValueError):  # it is registered already
+    with suppress(ValueError, ImportError):  # it is registered already, or the first run says what is missing
         jax.tree_util.register_pytree_node(PerTrajectory, lambda given: ((given.value,), None), made)

@@ -1,19 +1,21 @@
-"""Loops over steps under JAX, and the compiled functions that are kept."""
+"""Loops over steps under JAX, within a run of numpy and on JAX arrays, and the compiled functions that are kept."""
 
 from __future__ import annotations
 
 import hashlib
 from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass
-from functools import partial
-from typing import Any, NamedTuple, Protocol, TypeAlias, final
+from functools import cache, partial
+from importlib import import_module
+from importlib.util import find_spec
+from typing import Any, ClassVar, NamedTuple, TypeAlias, final
 
 import numpy as np
+import numpy.typing as npt
 
 from liehom.base.errors import LiehomError, TraceError
 from liehom.flow.action.field import GeneratorField
 from liehom.flow.action.space import Action
-from liehom.flow.engines.jax_kernel import options_of
 from liehom.flow.engines.traced_step import arg_values
 from liehom.flow.run.control import (
     MAX_RATE,
@@ -29,8 +31,143 @@ from liehom.flow.run.control import (
 )
 from liehom.flow.run.options import CLOCK, END, IMPLICIT, NOT_FINITE, TOO_MANY, TOO_SMALL
 from liehom.flow.steps.step import Generator, LocalStep, Step
+from liehom.flow.tracing.graph import needed
 from liehom.flow.tracing.loop import StepGraph
-from liehom.flow.tracing.sweeps import JaxArray, evaluate_with_jax
+from liehom.flow.tracing.machine import Kernel
+from liehom.flow.tracing.run_text import ALIVE, DONE, FAILED, Constant
+from liehom.flow.tracing.sweeps import JaxArray, evaluate_with_jax, jax, jnp, lax
+
+# The steps of numpy arrays by JAX within a run: all lanes at once, each with its own sizes and times.
+
+MAX_STORED_STEPS = 256  # steps are stored in blocks of powers of 2, at most this one, so that few codes are compiled
+WAITS = 2.0  # what `alive` says of a lane that has reached an output time, until numpy has stored its point
+
+
+def _fingerprint(graph: StepGraph) -> str:
+    """Digest of the operations of a graph; graphs with equal operations share their jitted functions."""
+    rows = [(x.op, *[a.index for a in x.args], x.value) for x in needed(graph.outputs)]
+    layout = [x.index for x in graph.outputs], graph.size, len(graph.largest), len(graph.constant_functions)
+    absent = [x is None for x in (graph.elapsed, graph.ordinary, graph.sizes, graph.tried, graph.reached)]
+    return hashlib.sha256(repr((rows, layout, absent)).encode()).hexdigest()
+
+
+@final
+class JaxKernel(Kernel):
+    """The run of a traced step as a jitted loop over steps, all lanes at once, each with its own sizes and times."""
+
+    engine = "jax"
+    in_lockstep, _has_prologue, cost = False, False, 16  # cost on the CPU
+    # XLA compiles operations one by one in a time that grows with the square of their number
+    tracing: ClassVar[dict[str, Any]] = {"branching": False, "unrolled": 4000}
+
+    def _build(self, constants: Sequence[Constant]) -> None:
+        if find_spec("jax") is None:
+            raise TraceError('engine="jax" needs JAX: pip install jax')
+        self._constants: Any = constants
+        options = {"static_argnames": "stored", **options_of("forward")}
+        self._jit: Compiled = _shared(_fingerprint(self.graph), "kernel", self._loop, options)
+
+    def __call__(self, state: npt.NDArray[np.float64], **fields: npt.NDArray[Any] | float | None) -> None:
+        known: dict[str, Any] = dict(fields)
+        n, k, end, out, path = self.graph.size, known["begin"], known["end"], known["out"], known["path"]
+        given = [known["constants" if kind == "run" else "rows"][place] for kind, place in self._constants]
+        fixed = given, known["stops"], known["last_stop"], known["origin"]
+        alive, stop = (state[self.names.index(name)] for name in ("alive", "stop"))
+        with enabled_x64():
+            while k < end and np.any(alive == ALIVE):
+                stored = 0 if path is None else min(MAX_STORED_STEPS, 1 << (end - k - 1).bit_length())
+                steps = min(end - k, stored or end)
+                made, new, landed, block = self._jit(np.array(state), fixed, steps, stored=stored)
+                state[:] = new
+                if path is not None:
+                    path[k - known["begin"] :][: int(made)] = block[: int(made)]
+                k += int(made)
+                waits, ended = alive == WAITS, alive == DONE
+                out[stop[waits].astype(int) - 1, :, waits] = np.asarray(landed).T[waits]
+                out[stop[ended].astype(int), :, ended] = state[:n, ended].T
+                alive[waits] = ALIVE
+
+    def _loop(self, state: JaxArray, fixed: JaxArray, steps: JaxArray, stored: int) -> JaxArray:
+        """Number of steps, state, points at stops and rows of the path, after steps of the lanes that do not wait."""
+        n, lanes = self.graph.size, state.shape[1]
+        s = dict(zip(self.names, state, strict=True))
+        if self.graph.first is not None:
+            inputs = {**{i: s[f"x{i}"] for i in range(n)}, n: s["t"], **{-1 - i: c for i, c in enumerate(fixed[0])}}
+            first = evaluate_with_jax([self.graph.first], inputs)[0]
+            s["h"] = jnp.where(jnp.isinf(s["h"]), first, s["h"])
+
+        def body(carried: JaxArray) -> JaxArray:
+            k, before, landed, block = carried
+            s, new, size = self._step(before, fixed)
+            landed = jnp.where((s["alive"] == WAITS) & (before["alive"] == ALIVE), new, landed)
+            if stored:
+                row = jnp.stack([*[s[f"x{i}"] for i in range(n)], s["t"], size])
+                block = lax.dynamic_update_index_in_dim(block, row, k, 0)
+            return k + 1, s, landed, block
+
+        start = 0, s, jnp.zeros((n, lanes)), jnp.zeros((stored, n + 2, lanes))
+        k, s, landed, block = lax.while_loop(lambda c: (c[0] < steps) & jnp.any(c[1]["alive"] == ALIVE), body, start)
+        return k, jnp.stack([s[name] for name in self.names]), landed, block
+
+    def _step(self, s: JaxArray, fixed: JaxArray) -> JaxArray:
+        """The state after one step, the point after it or at the stop, and the size, 0 for lanes that do not move."""
+        given, stops, last, origin = fixed
+        graph, n, sizes, time, h = self.graph, self.graph.size, self.graph.sizes, s["t"], s["h"]
+        stop_time = stops[s["stop"].astype(int)]
+        inputs = {**{i: s[f"x{i}"] for i in range(n)}, n: time, n + 1: h, n + 2: stop_time}
+        numbers = [f"e{i}" for i in range(len(graph.largest) + len(graph.summed))]
+        wanted = dict(zip(self.names, graph.point, strict=False))
+        wanted |= dict(zip(numbers, (*graph.largest.values(), *graph.summed.values()), strict=True))
+        more = {"elapsed": graph.elapsed, "ordinary": graph.ordinary, "tried": graph.tried, "reached": graph.reached}
+        more |= {} if sizes is None else {"accepted": sizes.accepted, "proposal": sizes.proposal}
+        wanted |= {name: x for name, x in more.items() if x is not None}
+        results = evaluate_with_jax(list(wanted.values()), inputs | {-1 - i: c for i, c in enumerate(given)})
+        new = {name: jnp.broadcast_to(x, time.shape) for name, x in zip(wanted, results, strict=True)}
+        points = jnp.stack([new[f"x{i}"] for i in range(n)])
+        going = s["alive"] == ALIVE
+        valid = going & jnp.all(jnp.isfinite(points), axis=0) & new.get("ordinary", True)
+        ends = new["reached"] & (s["stop"] >= last)
+        waits = valid & new["reached"] & ~ends
+        full = valid & ~waits
+        moved = full & new.get("accepted", True)
+        done = moved & ends
+        new["count"] = s["count"] + 1
+        after = time + new["elapsed"] if "elapsed" in new else origin + new["count"] * h
+        new["t"], new["kept"] = jnp.where(done, stop_time, after), s["stop"]
+        for i, name in enumerate(numbers):
+            new[name] = jnp.maximum(s[name], new[name]) if i < len(graph.largest) else s[name] + new[name]
+        state = {name: jnp.where(moved, new[name], x) if name in new else x for name, x in s.items()}
+        state["stop"] = s["stop"] + waits
+        if sizes is not None:
+            state["h"], state["tries"] = jnp.where(full, new["proposal"], h), s["tries"] + full
+            state["stop"] = jnp.where(full & ~moved, s["kept"], state["stop"])
+        alive = jnp.where(done, DONE, jnp.where(waits, WAITS, s["alive"]))
+        state["alive"] = jnp.where(going & ~valid, FAILED, alive)
+        return state, points, jnp.where(moved, new.get("tried", h), 0.0)
+
+
+@cache
+def options_of(how: str) -> dict[str, Any]:
+    """Options of jax.jit on this backend for code that is "forward", "long", or "nested" in a transformation (none). On
+    the CPU, fusion emitters compute a number again for each use (without them dop853 takes 1000 times fewer
+    operations); for a "long" function LLVM does not optimize (it compiles 3 times faster and runs 1.7 times longer).
+    """
+    options: dict[str, Any] = {"xla_cpu_use_fusion_emitters": False}
+    if how == "long":
+        options["xla_backend_optimization_level"] = 0
+    wanted: dict[str, Any] = {"compiler_options": options}
+    try:
+        if how != "nested" and jax.default_backend() == "cpu" and jax.jit(lambda x: x + 1, **wanted)(1) == 2:
+            return wanted
+    except (TypeError, ValueError, RuntimeError):  # other versions have no such options
+        pass
+    return {}
+
+
+def enabled_x64() -> JaxArray:
+    """A context in which JAX computes in float64."""
+    return jax.enable_x64(True) if hasattr(jax, "enable_x64") else import_module("jax.experimental").enable_x64()
+
 
 # A step at one point on JAX arrays, in two forms that give the same numbers to round-off.
 # * "arrays": the step's own code runs on JAX arrays of shape (..., N). Its operations are as many as those of the numpy
@@ -64,32 +201,18 @@ class LocalOnJax(NamedTuple):
 
     def runs(self, s: JaxArray) -> JaxArray:
         """Whether tau increases at an admissible rate over a step of size s, as in `liehom.flow.run.control`."""
-        import jax.numpy as jnp
-
-        if not self.clock:
-            return jnp.ones(jnp.shape(s), dtype=bool)
-        return is_admissible(self.clock, s)
+        return is_admissible(self.clock, s) if self.clock else jnp.ones(jnp.shape(s), dtype=bool)
 
     def size_for(self, time: JaxArray) -> tuple[JaxArray, JaxArray]:
         """The size s with tau(s) = time, by Newton's method, and whether it converged."""
-        import jax.numpy as jnp
-
         if not self.clock:
             return time, jnp.ones(jnp.shape(time), dtype=bool)
-        s: Any = time
+        s = time
         for _ in range(NEWTON_ITERATIONS):
             slope = 1 + sum(k * c * s ** (k - 1) for k, c in self.clock)
             s = s + (time - self.time(s)) / jnp.clip(slope, MIN_RATE, MAX_RATE)
         bound = NEWTON_ROUNDOFFS * float(np.finfo(s.dtype).eps) * jnp.abs(time)
         return s, jnp.abs(self.time(s) - time) <= bound
-
-
-class StepOnJax(Protocol):
-    """A step as a function of point, time and leaves of args, for the loops of `liehom.flow.engines`."""
-
-    def at(self, field: GeneratorField, m: JaxArray, t: JaxArray, start: JaxArray) -> LocalOnJax:
-        """The step at the points m (..., N) and times t (...,) of trajectories that begin at `start`."""
-        ...
 
 
 @final
@@ -104,7 +227,7 @@ class ArrayStep:
     error_terms: int = 0  # see `Step.at`
 
     def at(self, field: GeneratorField, m: JaxArray, t: JaxArray, start: JaxArray) -> LocalOnJax:
-        """The step at the points m (..., N) and times t (...,)."""
+        """The step at the points m (..., N) and times t (...,) of trajectories that begin at `start`."""
         psi = Generator(field, self.orbit_dimension, start)
         local = self.step.at(self.action, psi, m, t[..., None], error_terms=self.error_terms)
         clock: Any = () if self.nominal else local.clock
@@ -112,8 +235,6 @@ class ArrayStep:
 
 
 def _moved(local: LocalStep, m: JaxArray, t: JaxArray, s: JaxArray) -> Moved:
-    import jax.numpy as jnp
-
     moved: Any = local.point(s[..., None])
     point = jnp.broadcast_to(moved, m.shape).astype(m.dtype)
     zero = jnp.zeros(t.shape, t.dtype)
@@ -133,11 +254,8 @@ class GraphStep:
     graph: StepGraph
 
     def at(self, field: GeneratorField, m: JaxArray, t: JaxArray, start: JaxArray) -> LocalOnJax:
-        """The step at the points m (..., N) and times t (...,); the field is that of the graph, with other args."""
-        import jax.numpy as jnp
-
-        graph = self.graph
-        inputs = {**dict(enumerate(jnp.moveaxis(m, -1, 0))), graph.size: t}
+        """The step as for `ArrayStep`; the field is that of the graph, with other args."""
+        graph, inputs = self.graph, {**dict(enumerate(jnp.moveaxis(m, -1, 0))), self.graph.size: t}
         known = arg_values(field.args, m.ndim - 1)
         for i, function in enumerate(graph.constant_functions):
             name = getattr(function, "name", None)
@@ -148,8 +266,6 @@ class GraphStep:
         return LocalOnJax(partial(self._moved, inputs, m, t), clock)
 
     def _moved(self, inputs: dict[int, JaxArray], m: JaxArray, t: JaxArray, s: JaxArray) -> Moved:
-        import jax.numpy as jnp
-
         graph = self.graph
         numbers = [graph.summed[name] for name in ("failed", "near") if name in graph.summed]
         solved = [] if graph.solved is None else [graph.solved]
@@ -164,8 +280,6 @@ class GraphStep:
 
 
 def _code(point: JaxArray) -> JaxArray:
-    import jax.numpy as jnp
-
     return jnp.where(jnp.all(jnp.isfinite(point), axis=-1), np.int32(END), np.int32(NOT_FINITE))
 
 
@@ -174,14 +288,10 @@ def _code(point: JaxArray) -> JaxArray:
 # compiled code, so that functions which differ in such numbers alone share it.
 
 Jaxpr: TypeAlias = Any  # a jaxpr, one of its operations or of their parameters; JAX has no public types for them
-
 Leaves: TypeAlias = list[JaxArray]  # a flat list of JAX arrays
-
 Compiled: TypeAlias = Callable[..., Any]  # a function that jax.jit compiles
-
-MAX_SHARED = 64  # number of compiled functions that engines share
-LONG_EQUATIONS = 150
-"""Number of operations from which on XLA compiles gradients without its optimizations by LLVM, which take longest."""
+MAX_SHARED = 128  # number of compiled functions that engines share
+LONG_EQUATIONS = 150  # from which on XLA compiles gradients without its optimizations by LLVM, which take longest
 _SHARED: dict[tuple[str, Hashable], Any] = {}
 
 
@@ -196,8 +306,6 @@ class Program(NamedTuple):
     @classmethod
     def of(cls, function: Callable[..., Sequence[JaxArray]], arguments: Leaves) -> Program:
         """The trace of a function of arrays that returns a sequence of arrays."""
-        import jax
-
         try:
             closed = jax.make_jaxpr(function)(*arguments)
         except LiehomError:
@@ -211,8 +319,6 @@ class Program(NamedTuple):
 
     def __call__(self, constants: Leaves, arguments: Leaves) -> Leaves:
         """The results; JAX traces through this call."""
-        import jax
-
         return jax.core.eval_jaxpr(self.jaxpr, constants, *arguments)
 
     def compiled(self, how: str = "nested") -> Callable[[Leaves, Leaves], Leaves]:
@@ -223,7 +329,6 @@ class Program(NamedTuple):
         self, differentiable: Sequence[bool], *, nested: bool
     ) -> Callable[[Leaves, Leaves, JaxArray], tuple[Leaves, Leaves]]:
         """The compiled function (constants, arguments, cotangent of the first result) -> cotangents of both."""
-        import jax
 
         def pulled(constants: Leaves, arguments: Leaves, cotangent: JaxArray) -> tuple[Leaves, Leaves]:
             moving = [is_float(c) for c in constants]
@@ -256,11 +361,8 @@ def merged(which: Sequence[bool], some: Leaves, values: Leaves) -> Leaves:
 
 def _shared(digest: str | None, kind: Hashable, function: Compiled, options: dict[str, Any]) -> Compiled:
     """The jitted function of a digest, made if there is none."""
-    import jax
-
     if digest is None:
-        alone: Compiled = jax.jit(function, **options)
-        return alone
+        return jax.jit(function, **options)
     key = digest, kind
     if key not in _SHARED:
         if len(_SHARED) >= MAX_SHARED:
@@ -348,8 +450,6 @@ class State(NamedTuple):
     @classmethod
     def initial(cls, m: JaxArray, t0: JaxArray, direction: JaxArray) -> State:
         """The state at the initial points m (..., N)."""
-        import jax.numpy as jnp
-
         lead = m.shape[:-1]
         zero, none = jnp.zeros(lead, m.dtype), jnp.zeros(lead, np.int32)
         t = jnp.broadcast_to(t0, lead).astype(m.dtype)
@@ -362,31 +462,22 @@ class State(NamedTuple):
 
     def after(self, moved: Moved, t: JaxArray, commits: JaxArray, lands: JaxArray, direction: JaxArray) -> State:
         """The state after a step: `commits` says where it was an ordinary step, `lands` where it was the last one."""
-        import jax.numpy as jnp
-
         took = commits | lands
         lossy = took & ((moved.failed > 0) | (moved.near > 0))
+        failed, near = (jnp.where(took, x, 0.0).astype(self.t.dtype) for x in (moved.failed, moved.near))
         return self._replace(
-            m=jnp.where(commits[..., None], moved.point, self.m),
-            t=jnp.where(commits, t, self.t).astype(self.t.dtype),
-            count=self.count + commits,
-            failed=self.failed + jnp.where(took, moved.failed, 0.0).astype(self.t.dtype),
-            near=self.near + jnp.where(took, moved.near, 0.0).astype(self.t.dtype),
+            m=jnp.where(commits[..., None], moved.point, self.m), count=self.count + commits,
+            t=jnp.where(commits, t, self.t).astype(self.t.dtype), failed=self.failed + failed, near=self.near + near,
             lost=jnp.where(lossy, direction * jnp.minimum(direction * self.lost, direction * self.t), self.lost),
-            landed=self.landed | lands,
-            output=jnp.where(lands[..., None], moved.point, self.output),
-        )
+            landed=self.landed | lands, output=jnp.where(lands[..., None], moved.point, self.output),
+        )  # fmt: skip
 
     def failing(self, where: JaxArray, code: int | JaxArray) -> State:
         """The state in which some trajectories have failed, in a way that is a code of `run.options`."""
-        import jax.numpy as jnp
-
         return self._replace(code=jnp.where(where & self.moving, jnp.asarray(code, np.int32), self.code))
 
     def at_output(self) -> tuple[State, JaxArray]:
         """The state on the way to the next output time, and the points (..., N) at this one, NaN if not reached."""
-        import jax.numpy as jnp
-
         done = self.failing(~self.landed, TOO_MANY)
         points = jnp.where(self.landed[..., None], self.output, jnp.nan)
         return done._replace(landed=jnp.zeros_like(self.landed)), points
@@ -400,8 +491,6 @@ def with_given_sizes(
 
     Of each step only the point before it is stored for the derivative (`jax.checkpoint`); the rest is computed again.
     """
-    import jax
-    from jax import lax, numpy as jnp
 
     def one(state: State, time: JaxArray) -> State:
         local = at(state.m, state.t)
@@ -438,31 +527,24 @@ def with_adaptive_sizes(
     first: JaxArray, most: JaxArray, recorded: int,
 ) -> tuple[JaxArray, State, JaxArray]:  # fmt: skip
     """Points (k, ..., N) at the times, the last state, and the signed sizes (recorded, ...) of the ordinary steps."""
-    from jax import lax, numpy as jnp
-
     lead = m.shape[:-1]
-    direction: Any = limits.direction
-    stop: Any = limits.end
-    psi = Generator(field, step.orbit_dimension)
-    lanes, axes = int(np.prod(lead)), len(field.sites)
+    direction, stop = limits.direction, limits.end
+    psi, lanes, axes = Generator(field, step.orbit_dimension), int(np.prod(lead)), len(field.sites)
     places = jnp.arange(lanes)
 
-    def one(carried: tuple[State, Any, Any, Any], time: JaxArray) -> tuple[State, Any, Any, Any]:
-        state, proposal, sizes, tries = carried
+    def one(carried: tuple[State, Any, Any], time: JaxArray) -> tuple[State, Any, Any]:
+        state, proposal, sizes = carried
         local = at(state.m, state.t)
         inner: Any = local.local
-        guess: Any = first_size(limits, inner, psi, state.m, state.t)
+        guess = first_size(limits, inner, psi, state.m, state.t)
         if guess is not None:
             proposal = jnp.where(jnp.isinf(proposal), guess, proposal)
         tried = tried_size(limits, step.action, psi, inner, step.step.order, state.m, state.t, proposal, field)
-        certain: Any = tried.good
-        h: Any = direction * tried.size
+        h = direction * tried.size
         to_end, solved = local.size_for(stop - state.t)
         runs = local.runs(h)
         last = jnp.where(runs, direction * (stop - state.t - local.time(h)) <= SLACK * jnp.abs(h), False)
         h = jnp.where(last & solved, to_end, h)
-        accepted: Any
-        proposal_after: Any
         accepted, proposal_after = judgement(limits, inner, state.m, h[..., None], axes)
         after = jnp.where(last, stop, state.t + local.time(h))
         over = direction * (time - after) <= SLACK * jnp.abs(h)
@@ -478,20 +560,15 @@ def with_adaptive_sizes(
         shrunk = jnp.where(good, proposal_after, MAX_SHRINK * jnp.abs(h))
         proposal = jnp.where(moving & ~(took & over), shrunk, proposal).astype(m.dtype)
         after_step = state.after(moved, after, took & ~over, took & over, direction)
-        after_step = after_step.failing(moving & ~certain, TOO_SMALL)
-        return after_step.failing(moving & (after_step.count >= most) & ~over, TOO_MANY), proposal, sizes, tries + 1
+        after_step = after_step.failing(moving & ~tried.good, TOO_SMALL)
+        return after_step.failing(moving & (after_step.count >= most) & ~over, TOO_MANY), proposal, sizes
 
-    def towards(carried: tuple[State, Any, Any, Any], time: JaxArray) -> tuple[Any, JaxArray]:
+    def towards(carried: tuple[State, Any, Any], time: JaxArray) -> tuple[Any, JaxArray]:
         carried = lax.while_loop(lambda c: jnp.any(c[0].moving), lambda c: one(c, time), carried)
         state, points = carried[0].at_output()
         return (state, *carried[1:]), points
 
     proposal = jnp.broadcast_to(first, lead).astype(m.dtype)
-    start = State.initial(m, t0, direction), proposal, jnp.zeros((recorded, lanes), m.dtype), jnp.zeros((), np.int32)
-    (state, _, sizes, _), points = lax.scan(towards, start, times)
+    start = State.initial(m, t0, direction), proposal, jnp.zeros((recorded, lanes), m.dtype)
+    (state, _, sizes), points = lax.scan(towards, start, times)
     return points, state, sizes.reshape(recorded, *lead)
-
-
-def bound_step(step: StepOnJax, field: GeneratorField, start: JaxArray) -> At:
-    """The step for a field and the trajectories that begin at `start`."""
-    return lambda m, t: step.at(field, m, t, start)

@@ -13,11 +13,10 @@ from typing import Any, NamedTuple, TypeVar, final
 import numpy as np
 import numpy.typing as npt
 
-from liehom.base.typing import Array, BooleanArray, IntegerArray, Values
+from liehom.base.typing import Array, BooleanArray, IntegerArray, Lanes, Values
 from liehom.flow.action.field import check_point
 from liehom.flow.action.maps import matrices_of
 from liehom.flow.action.space import Action
-from liehom.flow.engines.traced_step import totals_of
 from liehom.flow.run.options import END, EVENT
 from liehom.flow.run.run import Run
 from liehom.flow.tracing.array import Traced
@@ -27,8 +26,7 @@ from liehom.flow.tracing.machine import PLACES, Kernel, lanes_per_register
 
 # How many operations a step has, and how many lanes a block of its code should have.
 
-SHORT_OPERATIONS, LONG_OPERATIONS = 200, 1000
-"""Operations between two loops up to which code is short, and from which on it is long."""
+SHORT_OPERATIONS, LONG_OPERATIONS = 200, 1000  # between two loops, up to which and from which on code is short and long
 ASSUMED_ITERATIONS = 5  # iterations that a loop in a step is assumed to make, for the number of its operations
 
 
@@ -36,11 +34,8 @@ def operations(graph: StepGraph) -> int:
     """Approximate number of scalar operations of a step."""
     rows = needed(graph.outputs)
     tables = sum(len(x.value[0].factors) for x in rows if x.op == "table")
-    return (
-        len(rows)
-        + tables
-        + ASSUMED_ITERATIONS * sum(len(x.value.inside) for x in rows if x.op == "loop" and not x.value.guarded)
-    )
+    inside = sum(len(x.value.inside) for x in rows if x.op == "loop" and not x.value.guarded)
+    return len(rows) + tables + ASSUMED_ITERATIONS * inside
 
 
 def block_width(graph: StepGraph, lanes: int) -> int:
@@ -83,7 +78,7 @@ def with_guard(graph: StepGraph, action: Action, dimension: int) -> StepGraph:
     return replace(graph, guard=guard, constant_functions=tuple(tape.constant_functions))
 
 
-def _has_rank(action: Action, m: Traced, size: Values, dimension: int) -> tuple[Values, Values]:
+def _has_rank(action: Action, m: Lanes, size: Lanes, dimension: int) -> tuple[Lanes, Lanes]:
     """Whether the orbit of a point m with m.m = size is certainly of at least, and at most, dimension d. A map of a
     random R^d to g, followed by the action on the point, is injective; if orbits of larger dimension exist, those of
     several R^(d + 1) are not. Their defect, divided by the smallest length before it, is round-off in all of them, and
@@ -92,11 +87,10 @@ def _has_rank(action: Action, m: Traced, size: Values, dimension: int) -> tuple[
     rng, tape = np.random.default_rng((0, dimension)), m.tape
     generic = check_point(action.representation, rng.normal(size=(4, m.shape[-1])))
     low = dimension < int(generic.max())
-    point: Any = m
-    frame: Any = action.infinitesimal.right(point)
-    certain: Any = Traced(tape, tape.false)
-    small: Any = certain
-    bounded: Any = Traced(tape, tape.true)
+    frame: Lanes = action.infinitesimal.right(m)
+    certain: Lanes = Traced(tape, tape.false)
+    bounded: Lanes = Traced(tape, tape.true)
+    small = certain
     for _ in range(GUARD_PROJECTIONS):
         lengths = _orthogonal_lengths(frame @ rng.normal(size=(action.dimension, dimension + low)))
         certain = certain | _are_certain(lengths[:dimension], size)
@@ -130,13 +124,12 @@ def _are_certain(lengths: Sequence[Any], scale: Values) -> Values:
 # The lanes of a kernel: their state as rows, and what becomes of them in the state of a run.
 
 PATH_BYTES_PER_CALL = 64_000_000  # bytes of points, times and sizes that a kernel call records at most
-OPERATIONS_PER_CALL = 4_000_000_000
-"""Scalar operations per kernel call, summed over lanes. Progress, checkpoints and Ctrl-C are handled between calls."""
+OPERATIONS_PER_CALL = 4_000_000_000  # summed over lanes; progress, checkpoints and Ctrl-C are handled between calls
 MIN_STEPS_PER_CALL = 8  # steps per kernel call at least: the time between two calls is that of some steps
 LANE_STEPS_FOR_THREADS = 50_000  # steps of a call, summed over lanes, from which on threads share the blocks
 T = TypeVar("T")
 Job = TypeVar("Job")
-_POOL: dict[int, ThreadPoolExecutor] = {}
+_POOL: dict[int, ThreadPoolExecutor] = {}  # threads that kernels share, by their number
 if hasattr(os, "register_at_fork"):
     os.register_at_fork(after_in_child=_POOL.clear)
 
@@ -213,16 +206,11 @@ def run_blocks(kernel: Kernel, state: Array, fields: Mapping[str, Any], steps: i
 def in_threads(function: Callable[[Job], T], jobs: Sequence[Job]) -> list[T]:
     """The values of a function that machine code makes, in threads."""
     workers = min(cores(), len(jobs))
-    if workers == 1:
+    if workers <= 1:
         return [function(job) for job in jobs]
-    return [job.result() for job in [_pool(workers).submit(function, job) for job in jobs]]
-
-
-def _pool(workers: int) -> ThreadPoolExecutor:
-    """The threads that kernels share."""
     if workers not in _POOL:
         _POOL[workers] = ThreadPoolExecutor(workers, thread_name_prefix="liehom")
-    return _POOL[workers]
+    return [job.result() for job in [_POOL[workers].submit(function, job) for job in jobs]]
 
 
 def cores() -> int:
@@ -314,8 +302,12 @@ class HandBack:
 
 
 def records_of(kernel: Kernel, row: dict[str, Array]) -> dict[str, tuple[Array, str]]:
-    """The totals of the steps, by name."""
-    return totals_of(kernel.graph, [row[name] for name in _recorded(kernel.graph)])
+    """The totals of the steps but the calls of psi, by name, with their kinds."""
+    graph = kernel.graph
+    kinds = ["max"] * len(graph.largest) + ["sum"] * len(graph.summed)
+    rows = zip((*graph.largest, *graph.summed), [row[e] for e in _recorded(graph)], kinds, strict=True)
+    kept = [(name, x, kind) for name, x, kind in rows if name != "calls"]
+    return {name.removeprefix("-"): (-x, "min") if name[0] == "-" else (x, kind) for name, x, kind in kept}
 
 
 def _recorded(graph: StepGraph) -> list[str]:

@@ -132,8 +132,7 @@ class _LatticeLocal(LocalStep):
     def _made(self, h: Values) -> tuple[Array, Array | None]:
         sizes = np.broadcast_to(np.asarray(h)[..., 0], self.m.shape[:-1])
         if self._last is None or not np.array_equal(self._last[0], sizes):
-            start: Any = self.m
-            self._last = sizes.copy(), self.step.made(np.asarray(start), self.t, sizes)
+            self._last = sizes.copy(), self.step.made(np.asarray(self.m), self.t, sizes)
         return self._last[1]
 
     def _moved(self, h: Values) -> Values:
@@ -260,9 +259,8 @@ class LatticePath:
 
 def lattice_step(problem: Problem) -> LatticeStep:
     """The step of a problem whose trajectories are the sites of lattices, in machine code."""
-    start: Any = problem.start
-    if start.dtype != np.float64:
-        raise InputError(f"engine='llvm' computes in float64, the start is of type {start.dtype}: take engine='numpy'")
+    if (kind := problem.start.dtype) != np.float64:
+        raise InputError(f"engine='llvm' computes in float64, the start is of type {kind}: take engine='numpy'")
     return LatticeStep(
         problem.step, problem.bound, problem.action, int(np.max(problem.orbit_dimension)), workers=cores()
     )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Sequence
+from collections.abc import Hashable, Iterator, Sequence
 from functools import reduce
 from typing import Any
 
@@ -10,7 +10,7 @@ import numpy as np
 
 from liehom.base.errors import LiehomError, TraceError
 from liehom.base.pytrees import Leaf, PerTrajectory, leaves, mapped
-from liehom.base.typing import Array, IntegerArray, Pytree, Real, Values
+from liehom.base.typing import Array, IntegerArray, Lanes, Pytree, Real, Values
 from liehom.flow.action.field import GeneratorField
 from liehom.flow.action.space import Action, tight_frame
 from liehom.flow.run.check import Seen, is_unbounded
@@ -28,7 +28,7 @@ from liehom.flow.run.control import (
 )
 from liehom.flow.run.records import LOST, bounds_of, earliness
 from liehom.flow.steps.step import Generator, LocalStep, Step
-from liehom.flow.tracing.array import Traced
+from liehom.flow.tracing.array import Operand, Traced
 from liehom.flow.tracing.graph import LEAST_LOOP, Expr, LongGraphError, Tape
 from liehom.flow.tracing.loop import Sizes, StepGraph, while_loop
 
@@ -42,13 +42,10 @@ def traced_args(tape: Tape, args: Pytree, lead: int = 1) -> Pytree:
 
     def traced(leaf: Leaf) -> Traced:
         value, shape, varies = _of(leaf, lead)
+        constant = tape.lane_constant if varies else tape.run_constant
         entries = np.empty(shape, dtype=object)
-        for entry in np.ndindex(shape):
-            name = _name(leaf.path, entry)
-            if varies:
-                entries[entry] = tape.lane_constant(name, value[(..., *entry)])
-            else:
-                entries[entry] = tape.run_constant(name, value[entry] if entry else value)
+        for entry, name, number in _entries(leaf, lead):
+            entries[entry] = constant(name, number)
         return Traced(tape, entries) != 0 if _is_boolean(value) else Traced(tape, entries)
 
     return mapped(args, traced)
@@ -56,33 +53,24 @@ def traced_args(tape: Tape, args: Pytree, lead: int = 1) -> Pytree:
 
 def arg_values(args: Pytree, lead: int) -> dict[str, Any]:
     """The numbers in args by their names: numbers, or arrays (L,) for slices of the trajectories."""
-    numbers: dict[str, Any] = {}
-    for leaf in leaves(args):
-        value, shape, varies = _of(leaf, lead)
-        for entry in np.ndindex(shape):
-            number = value[(..., *entry)].reshape(-1) if varies else value[entry] if entry else value
-            numbers[_name(leaf.path, entry)] = number
-    return numbers
+    return {name: number for leaf in leaves(args) for _, name, number in _entries(leaf, lead)}
 
 
 def numbers_in(found: Sequence[Leaf], lead: int) -> list[Any]:
     """The numbers in the leaves of args, without JAX, in the order of `arg_values`."""
     numbers: list[Any] = []
-    for _, value in found:
-        if isinstance(value, PerTrajectory):
-            rows = value.value.reshape(int(np.prod(value.value.shape[:lead], dtype=int)), -1)
-            numbers += list(rows.T)
+    for _, x in found:
+        if isinstance(x, PerTrajectory):
+            numbers += list(x.value.reshape(int(np.prod(x.value.shape[:lead], dtype=int)), -1).T)
         else:
-            numbers += np.ravel(value).tolist()
+            numbers += np.ravel(x).tolist()
     return numbers
 
 
 def args_form(args: Pytree, lead: int) -> Hashable:
     """The form that args must share for one graph to serve them: paths and shapes."""
-    return tuple(
-        (path, shape, varies, _is_boolean(value))
-        for path, value, shape, varies in ((leaf.path, *_of(leaf, lead)) for leaf in leaves(args))
-    )
+    form = ((leaf.path, *_of(leaf, lead)) for leaf in leaves(args))
+    return tuple((path, shape, varies, _is_boolean(value)) for path, value, shape, varies in form)
 
 
 def args_of_lanes(args: Pytree, lead: tuple[int, ...], lanes: IntegerArray) -> Pytree:
@@ -106,31 +94,33 @@ def _of(leaf: Leaf, lead: int) -> tuple[Any, tuple[int, ...], bool]:
 
 def _is_boolean(value: object) -> bool:
     """Whether a number or an array is of boolean type."""
-    kind: str = getattr(value, "dtype", np.dtype(type(value))).kind
-    return kind == "b"
+    return bool(getattr(value, "dtype", np.dtype(type(value))).kind == "b")
 
 
-def _name(path: str, entry: tuple[int, ...]) -> str:
-    return path + "".join(f"[{i}]" for i in entry)
+def _entries(leaf: Leaf, lead: int) -> Iterator[tuple[tuple[int, ...], str, Any]]:
+    """Place, name and value of each number of a leaf."""
+    value, shape, varies = _of(leaf, lead)
+    for entry in np.ndindex(shape):
+        number = value[(..., *entry)].reshape(-1) if varies else value[entry] if entry else value
+        yield entry, leaf.path + "".join(f"[{i}]" for i in entry), number
 
 
 EPS = float(np.finfo(np.float64).eps)
 
 
 def size_to_stop(
-    local: LocalStep | None, h: Values, left: Values, bounds: tuple[Real, Real]
-) -> tuple[Values, Values, Values | bool]:
+    local: LocalStep | None, h: Lanes, left: Lanes, bounds: tuple[Lanes, Lanes]
+) -> tuple[Lanes, Lanes, Lanes]:
     """A step size that ends at a stop in the time `left` if the step reaches it: on tracers."""
     direction, tiny = bounds
     if local is None:
         reached = direction * (left - h) <= SLACK * np.abs(h) + tiny
         return np.where(reached, left, h), reached, True
-    size: Any = h
-    tape = size.tape
+    tape, size = h.tape, h
     passed = local.time(h)
     reached = direction * (left - passed) <= SLACK * np.abs(h)
 
-    def newton(wanted: Values, s: Values) -> tuple[list[Values], Values]:
+    def newton(wanted: Lanes, s: Lanes) -> tuple[list[Lanes], Lanes]:
         slope = 1 + sum(k * c * s ** (k - 1) for k, c in local.clock)
         new = s + (left - local.time(s)) / np.clip(slope, MIN_RATE, MAX_RATE)
         again = wanted & (np.abs(new - s) > 2 * EPS * np.abs(s))
@@ -187,11 +177,14 @@ def _traced(
     local = step.at(action, psi, m, t[..., None], error_terms=error_terms)
     tried = None
     if limits is not None:
-        limits = _traced_limits(tape, limits)
+        # `moves`, and a gap that is None or inf, stay as they are; the others are constants of the run
+        fixed = {"moves", "gap"} if limits.gap is None or is_unbounded(limits.gap) else {"moves"}
+        given: Any = {k: Traced(tape, tape.run_constant(k, x)) for k, x in limits._asdict().items() if k not in fixed}
+        limits = limits._replace(**given)
         tried = tried_size(limits, action, psi, local, step.order, m, t, h, field)
         h = limits.direction * tried.size
     own_clock, first, reached = bool(local.clock) and not nominal, None, None
-    passed = _number(tape, local.time(h) if own_clock else h) if own_clock or limits is not None else None
+    passed = _number(tape, local.time(h) if own_clock else None if limits is None else h)
     if stops:
         before = tape.calls
         first = None if limits is None else first_size(limits, local, psi, m, t)
@@ -209,8 +202,9 @@ def _traced(
         runs = _clock_is_admissible(tape, local.clock, h)
         if limits is not None:  # adaptive steps are larger than fixed ones: the sharper test of a run
             runs = _number(tape, clock_at(local, h)[0])
-    judged = () if limits is None else judgement(limits, local, m, size)
-    sizes = Sizes(_number(tape, h), *[_number(tape, x) for x in judged]) if judged else None
+    sizes = None
+    if limits is not None:
+        sizes = Sizes(*[_number(tape, x) for x in (h, *judgement(limits, local, m, size))])
     worst, summed = _statistics(tape, local, t, size, ends)
     if tried is not None and limits is not None and limits.gap is not None and local.estimate_order is None:
         summed |= {"looks": _number(tape, tried.looks), "cuts": _number(tape, tried.cuts)}
@@ -224,9 +218,7 @@ def _traced(
         summed["calls"] = tape.calls
     return StepGraph(
         point, passed, runs, worst, summed, tuple(tape.constant_functions), clock, solved, sizes, calls,
-        reached=None if reached is None else _number(tape, reached),
-        tried=None if reached is None else _number(tape, h),
-        first=None if first is None else _number(tape, first),
+        reached=_number(tape, reached), tried=_number(tape, h if stops else None), first=_number(tape, first),
     )  # fmt: skip
 
 
@@ -261,13 +253,6 @@ def all_of(tape: Tape, conditions: Sequence[Expr]) -> Expr | None:
     return reduce(tape.both, unsure) if unsure else None
 
 
-def _traced_limits(tape: Tape, limits: SizeLimits) -> SizeLimits:
-    """The numbers of the limits by name, as constants of the run; `moves` and a gap that is None or inf as they are."""
-    fixed = {"moves", "gap"} if limits.gap is None or is_unbounded(limits.gap) else {"moves"}
-    traced: Any = {k: Traced(tape, tape.run_constant(k, x)) for k, x in limits._asdict().items() if k not in fixed}
-    return limits._replace(**traced)
-
-
 def _counted(tape: Tape, field: GeneratorField) -> GeneratorField:
     """The field, with its calls counted on the tape."""
 
@@ -278,9 +263,9 @@ def _counted(tape: Tape, field: GeneratorField) -> GeneratorField:
     return GeneratorField(field.representation, psi, time_dependent=field.time_dependent)
 
 
-def _number(tape: Tape, x: object) -> Expr:
-    """A number, or a tracer of shape (), as an expression on the tape."""
-    return Traced(tape, x).entry
+def _number(tape: Tape, x: object) -> Operand:
+    """A number, or a tracer of shape (), as an expression on the tape; None stays None."""
+    return None if x is None else Traced(tape, x).entry
 
 
 def _clock_is_admissible(tape: Tape, clock: Sequence[tuple[int, Any]], h: Values) -> Expr:
@@ -306,17 +291,6 @@ def _statistics(
             summed[name] = value
         else:
             largest[name if kind == "max" else f"-{name}"] = value if kind == "max" else -value
-    return ({k: _amount(tape, x) for k, x in largest.items()}, {k: _amount(tape, x) for k, x in summed.items()})
-
-
-def totals_of(graph: StepGraph, rows: Sequence[Array]) -> dict[str, tuple[Array, str]]:
-    """Totals of compiled steps but the calls of psi, with their kind, from `graph.largest` and `graph.summed`."""
-    kinds = ["max"] * len(graph.largest) + ["sum"] * len(graph.summed)
-    rows_of = zip((*graph.largest, *graph.summed), rows[: len(kinds)], kinds, strict=True)
-    kept = [(name, x, kind) for name, x, kind in rows_of if name != "calls"]
-    return {name.removeprefix("-"): (-x, "min") if name[0] == "-" else (x, kind) for name, x, kind in kept}
-
-
-def _amount(tape: Tape, x: object) -> Expr:
-    """A number, or 0 or 1 for a boolean."""
-    return tape.number(_number(tape, x))
+    # booleans count as 0 or 1
+    first, second = ({k: tape.number(_number(tape, x)) for k, x in some.items()} for some in (largest, summed))
+    return first, second

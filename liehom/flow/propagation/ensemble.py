@@ -7,8 +7,8 @@ import os
 import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import partial
-from itertools import pairwise
-from typing import Any, NamedTuple, Unpack
+from itertools import chain, pairwise
+from typing import Any, NamedTuple, TypeAlias, Unpack
 
 import numpy as np
 import numpy.typing as npt
@@ -16,7 +16,7 @@ import numpy.typing as npt
 from liehom.base.disk import digest
 from liehom.base.errors import InputError, LiehomError, ShapeError
 from liehom.base.pytrees import Leaf, PerTrajectory, check_numbers, mapped
-from liehom.base.store import open_store
+from liehom.base.store import Store, open_store
 from liehom.base.tasks import BUFFERSIZE, ExecutorLike, completed
 from liehom.base.typing import Array, IntegerArray, Pytree
 from liehom.flow.action.field import GeneratorField, check_point
@@ -49,50 +49,42 @@ def merged(parts: Sequence[Solution], *, sampled: bool) -> Solution:
     """The solution of an ensemble from the solutions of its parts, consecutive rows of it."""
     statuses = np.concatenate([part.statuses for part in parts])
     status = overall_status(statuses)
-    report = merged_report([part.report for part in parts], _direction(parts))
+    direction = -1.0 if any(np.any(np.diff(part.t) < 0) for part in parts) else 1.0
+    report = merged_report([part.report for part in parts], direction)
     count = max(part.t.shape[-1] for part in parts)
-    events = parts[0].t_events is not None
     return Solution(
         t=parts[0].t if sampled else np.concatenate([_filled(part.t, count) for part in parts]),
-        y=np.concatenate([_filled(part.y, count) for part in parts]),
-        sol=None,
-        t_events=_joined([part.t_events for part in parts]) if events else None,
-        y_events=_joined([part.y_events for part in parts]) if events else None,
-        nfev=sum(part.nfev for part in parts),
-        status=status,
-        message=_message(parts, statuses, status, report),
-        n_steps=np.concatenate([part.n_steps for part in parts]),
-        report=report,
-        statuses=statuses,
-    )
+        y=np.concatenate([_filled(part.y, count) for part in parts]), sol=None,
+        t_events=_joined([part.t_events for part in parts]), y_events=_joined([part.y_events for part in parts]),
+        nfev=sum(part.nfev for part in parts), status=status, message=_message(parts, statuses, status, report),
+        n_steps=np.concatenate([part.n_steps for part in parts]), report=report, statuses=statuses,
+    )  # fmt: skip
 
 
 def merged_report(reports: Sequence[Report], direction: float = 1.0) -> Report:
     """The report of several runs by one method: extremes and sums of their reports."""
     least = min(reports, key=lambda report: report.singular_value)
     conserved = [report.conservation for report in reports if report.conservation is not None]
+    names = [report.engine.split(", ") for report in reports if report.engine]
+    numbers = _joint(reports, max, "worst_residual", "orbit_dimension")
+    numbers |= _joint(reports, sum, "failed_steps", "equilibria", "near_steps", "looks", "cuts")
+    numbers |= {
+        name: min(_known(reports, name), key=lambda time: direction * time, default=None)
+        for name in ("unkept_from", "stopped_at")
+    }
     return dataclasses.replace(
-        reports[0],
-        order=min(report.order for report in reports),
-        worst_residual=max(report.worst_residual for report in reports),
-        singular_value=least.singular_value,
-        singular_at=least.singular_at,
-        rank=_least_rank([report.rank for report in reports]),
-        orbit_dimension=max(report.orbit_dimension for report in reports),
-        failed_steps=sum(report.failed_steps for report in reports),
-        equilibria=sum(report.equilibria for report in reports),
-        near_steps=sum(report.near_steps for report in reports),
-        looks=sum(report.looks for report in reports),
-        cuts=sum(report.cuts for report in reports),
-        engine=", ".join(dict.fromkeys(name for report in reports for name in report.engine.split(", ") if name)),
-        unkept_from=_earliest([report.unkept_from for report in reports], direction),
-        stopped_at=_earliest([report.stopped_at for report in reports], direction),
+        reports[0], **numbers, order=min(report.order for report in reports), singular_value=least.singular_value,
+        singular_at=least.singular_at, rank=_least_rank(reports),
+        engine=", ".join(dict.fromkeys(name for some in names for name in some)),
         conservation=_conserved(conserved) if conserved else None,
         diagnostics=_totals([report.diagnostics for report in reports]),
-    )
+    )  # fmt: skip
 
 
 # -- private helpers -------------------------------------------------------------------------------------
+AnyReport: TypeAlias = Report | ConservationReport
+
+
 def _filled(array: Array, count: int) -> Array:
     """The array with its last axis filled up with NaN to length `count`."""
     missing = count - array.shape[-1]
@@ -101,9 +93,10 @@ def _filled(array: Array, count: int) -> Array:
     return np.concatenate([array, np.full((*array.shape[:-1], missing), np.nan, dtype=array.dtype)], axis=-1)
 
 
-def _joined(parts: Sequence[list[npt.NDArray[Any]] | None]) -> list[npt.NDArray[Any]]:
+def _joined(parts: Sequence[list[npt.NDArray[Any]] | None]) -> list[npt.NDArray[Any]] | None:
     """For each event, the arrays of the parts joined."""
-    return [np.concatenate(arrays) for arrays in zip(*[part or [] for part in parts], strict=True)]
+    lists = [part for part in parts if part is not None]
+    return [np.concatenate(arrays) for arrays in zip(*lists, strict=True)] if lists else None
 
 
 def _message(parts: Sequence[Solution], statuses: IntegerArray, status: int, report: Report) -> str:
@@ -115,45 +108,35 @@ def _message(parts: Sequence[Solution], statuses: IntegerArray, status: int, rep
     return message.split(TRAJECTORY_MARK)[0] + among(statuses == status, " failed" if status == -1 else LOST) + more
 
 
-def _direction(parts: Sequence[Solution]) -> float:
-    """1, or -1 if time decreases in the trajectories."""
-    return -1.0 if any(np.any(np.diff(part.t) < 0) for part in parts) else 1.0
+def _joint(reports: Sequence[AnyReport], join: Callable[[Iterator[Any]], Any], *names: str) -> dict[str, Any]:
+    """Some entries of all reports, joined."""
+    return {name: join(getattr(report, name) for report in reports) for name in names}
 
 
-def _earliest(times: Sequence[float | None], direction: float) -> float | None:
-    """The earliest of some times; None stands for no time, in `times` and as the result."""
-    return min((time for time in times if time is not None), key=lambda time: direction * time, default=None)
+def _known(reports: Sequence[AnyReport], name: str) -> list[Any]:
+    """The values of an entry that are not None."""
+    return [x for report in reports if (x := getattr(report, name)) is not None]
 
 
-def _least_rank(ranks: Sequence[int]) -> int:
-    """The smallest rank that was met; 0 stands for no rank, in `ranks` and as the result."""
-    return min((rank for rank in ranks if rank), default=0)
+def _least_rank(reports: Sequence[AnyReport]) -> int:
+    """The smallest rank that was met; 0 stands for no rank, in reports and as the result."""
+    return min((report.rank for report in reports if report.rank), default=0)
 
 
 def _totals(parts: Sequence[tuple[tuple[str, str, float], ...]]) -> tuple[tuple[str, str, float], ...]:
     """Totals of the diagnostics of several runs."""
     values: dict[tuple[str, str], list[float]] = {}
-    for name, kind, value in (entry for part in parts for entry in part):
+    for name, kind, value in chain.from_iterable(parts):
         values.setdefault((name, kind), []).append(value)
-    return tuple(
-        (name, kind, max(x) if kind == "max" else min(x) if kind == "min" else sum(x))
-        for (name, kind), x in values.items()
-    )
+    joins: dict[str, Callable[[list[float]], float]] = {"max": max, "min": min, "sum": sum}
+    return tuple((name, kind, joins[kind](x)) for (name, kind), x in values.items())
 
 
 def _conserved(reports: Sequence[ConservationReport]) -> ConservationReport:
-    short = [report.short_at for report in reports if report.short_at is not None]
-    return dataclasses.replace(
-        reports[0],
-        rank=_least_rank([report.rank for report in reports]),
-        wanted=max(report.wanted for report in reports),
-        iterations=max(report.iterations for report in reports),
-        defect=max(report.defect for report in reports),
-        missed_steps=sum(report.missed_steps for report in reports),
-        left_steps=sum(report.left_steps for report in reports),
-        short_steps=sum(report.short_steps for report in reports),
-        short_at=min(short, key=lambda at: at[0], default=None),
-    )
+    first = min(_known(reports, "short_at"), key=lambda at: at[0], default=None)
+    numbers = _joint(reports, max, "wanted", "iterations", "defect")
+    numbers |= _joint(reports, sum, "missed_steps", "left_steps", "short_steps")
+    return dataclasses.replace(reports[0], **numbers, rank=_least_rank(reports), short_at=first)
 
 
 # EnsembleProblem: one call of `integrate` as a value, which can be cut into rows, sent to a worker and compared.
@@ -243,19 +226,31 @@ def all_solved(
     problems: Sequence[EnsembleProblem], executor: ExecutorLike, store: str | os.PathLike[str] | None, retries: int = 2
 ) -> list[Solution]:
     """The solutions of problems that differ in dt, in order, computed on an executor and kept in a store if given."""
-    names = [f"run-{number:04d}" for number in range(len(problems))]
-    kept, solutions = None, dict[int, Solution]()
+    kept = None
     if store is not None:
         together = problems[0].options | {"dt": [problem.options["dt"] for problem in problems]}
         kept = open_store(store, problems[0]._replace(options=together).fingerprint(problems[0].made(), []))
-        read = {i: kept.restored(name, from_arrays) for i, name in enumerate(names) if name in kept.names()}
-        solutions = {i: solution for i, solution in read.items() if solution is not None}
-    todo = [i for i in range(len(problems)) if i not in solutions]
-    for number, solution in completed(solved, (problems[i] for i in todo), executor, retries=retries):
+    names = [f"run-{number:04d}" for number in range(len(problems))]
+    solutions = dict(_stored(names, problems.__getitem__, kept, executor, retries=retries))
+    return [solutions[i] for i in range(len(problems))]
+
+
+def _stored(
+    names: Sequence[str], task: Callable[[int], EnsembleProblem], kept: Store | None, executor: ExecutorLike,
+    **options: int,
+) -> Iterator[tuple[int, Solution]]:  # fmt: skip
+    """(number, solution) of tasks: first those that a store has under their names, then the others, which it gets."""
+    done, todo = frozenset() if kept is None else kept.names(), list[int]()
+    for i, name in enumerate(names):
+        stored = kept.restored(name, from_arrays) if kept is not None and name in done else None
+        if stored is None:
+            todo.append(i)
+        else:
+            yield i, stored
+    for number, solution in completed(solved, map(task, todo), executor, **options):
         if kept is not None:
             kept.save(names[todo[number]], *as_arrays(solution))
-        solutions[todo[number]] = solution
-    return [solutions[i] for i in range(len(problems))]
+        yield todo[number], solution
 
 
 # -- private helpers ---------------------------------------------------------------------------------------
@@ -296,17 +291,10 @@ class EnsemblePart(NamedTuple):
 
 
 def integrate_ensemble(
-    field: GeneratorField,
-    t_span: Iterable[float],
-    y0: npt.ArrayLike,
-    *,
-    executor: ExecutorLike = None,
-    chunk: int = CHUNK,
-    store: str | os.PathLike[str] | None = None,
-    retries: int = 2,
-    progress: bool | Callable[[float], object] = False,
-    **options: Unpack[EnsembleOptions],
-) -> Solution:
+    field: GeneratorField, t_span: Iterable[float], y0: npt.ArrayLike, *, executor: ExecutorLike = None,
+    chunk: int = CHUNK, store: str | os.PathLike[str] | None = None, retries: int = 2,
+    progress: bool | Callable[[float], object] = False, **options: Unpack[EnsembleOptions],
+) -> Solution:  # fmt: skip
     """Solution of an ensemble that is integrated in chunks, on any executor, like that of one run of `integrate`.
 
     Parameters
@@ -366,10 +354,9 @@ def integrate_ensemble(
     """
     starts: Any = y0
     parts: list[EnsemblePart] = []
+    how: dict[str, Any] = {"executor": executor, "chunk": chunk, "store": store, "retries": retries, **options}
     with Progress(progress) as shown:
-        for part in ensemble_parts(
-            field, t_span, y0, executor=executor, chunk=chunk, store=store, retries=retries, **options
-        ):
+        for part in ensemble_parts(field, t_span, y0, **how):
             parts.append(part)
             shown.update(lambda: sum(part.last - part.first for part in parts) / len(starts))
         shown.update(lambda: 1.0, last=True)
@@ -380,16 +367,10 @@ def integrate_ensemble(
 
 
 def ensemble_parts(
-    field: GeneratorField,
-    t_span: Iterable[float],
-    y0: npt.ArrayLike,
-    *,
-    executor: ExecutorLike = None,
-    chunk: int = CHUNK,
-    store: str | os.PathLike[str] | None = None,
-    retries: int = 2,
+    field: GeneratorField, t_span: Iterable[float], y0: npt.ArrayLike, *, executor: ExecutorLike = None,
+    chunk: int = CHUNK, store: str | os.PathLike[str] | None = None, retries: int = 2,
     **options: Unpack[EnsembleOptions],
-) -> Iterator[EnsemblePart]:
+) -> Iterator[EnsemblePart]:  # fmt: skip
     """Iterator over the chunks of an ensemble in order of completion, for ensembles that do not fit in memory.
 
     Parameters
@@ -430,25 +411,12 @@ def ensemble_parts(
     if options.get("step") is None and not has_series(one_field, start, problem.ends()[0]):
         problem.options["step"] = as_step("dop853")
     kept = None if store is None else open_store(store, problem.fingerprint(one_field, bounds))
-    done = frozenset() if kept is None else kept.names()
-    todo = [rows for rows in bounds if _name(rows) not in done]
-
-    def parts() -> Iterator[EnsemblePart]:
-        for rows in bounds:
-            if kept is not None and _name(rows) in done:
-                stored = kept.restored(_name(rows), from_arrays)
-                if stored is None:
-                    todo.append(rows)
-                else:
-                    yield EnsemblePart(*rows, stored)
-        tasks, buffersize = (problem.task(rows) for rows in todo), _buffersize(start, chunk)
-        for number, solution in completed(solved, tasks, executor, retries=retries, buffersize=buffersize):
-            rows = todo[number]
-            if kept is not None:
-                kept.save(_name(rows), *as_arrays(solution))
-            yield EnsemblePart(*rows, solution)
-
-    return parts()
+    # chunks in flight, whose initial points take some 100 MB
+    size = max(64, min(BUFFERSIZE, 10**8 // (8 * chunk * int(start[0].size))))
+    parts = _stored(
+        list(map(_name, bounds)), lambda i: problem.task(bounds[i]), kept, executor, retries=retries, buffersize=size
+    )
+    return (EnsemblePart(*bounds[i], solution) for i, solution in parts)
 
 
 def stored_parts(store: str | os.PathLike[str]) -> Iterator[EnsemblePart]:
@@ -496,11 +464,6 @@ def _bounds(n: int, chunk: int) -> list[tuple[int, int]]:
     """Rows (first, last) of the chunks: as few as possible, of sizes that differ by at most 1."""
     count = -(-n // chunk)
     return list(pairwise(i * n // count for i in range(count + 1)))
-
-
-def _buffersize(start: Array, chunk: int) -> int:
-    """Number of chunks in flight, whose initial points take some 100 MB."""
-    return max(64, min(BUFFERSIZE, 10**8 // (8 * chunk * int(start[0].size))))
 
 
 def _name(rows: tuple[int, int]) -> str:

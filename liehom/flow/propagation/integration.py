@@ -18,17 +18,10 @@ from liehom.flow.steps.step import ExponentialLike, StepLike
 
 
 def integrate(
-    field: GeneratorField,
-    t_span: Iterable[float] | Span,
-    y0: npt.ArrayLike,
-    *,
-    step: StepLike | None = None,
-    args: Pytree = None,
-    exponential: ExponentialLike = "exp",
-    clock: str = "corrected",
-    engine: str | Engine = "auto",
+    field: GeneratorField, t_span: Iterable[float] | Span, y0: npt.ArrayLike, *, step: StepLike | None = None,
+    args: Pytree = None, exponential: ExponentialLike = "exp", clock: str = "corrected", engine: str | Engine = "auto",
     **options: Unpack[CallOptions],
-) -> Solution:
+) -> Solution:  # fmt: skip
     """Trajectories of m' = rho(psi(m, t)) m, a `Solution` that stays on the orbit of the initial point.
 
     Parameters
@@ -75,8 +68,8 @@ def integrate(
         The largest number of steps of a trajectory; at that number it ends with status -1.
     looks : int, optional
         How often psi is looked at across the time span, besides once in each step, before adaptive steps are taken. A
-        feature longer than the time between two looks is seen. 0 switches the check off (default: 128 for psi(m, t);
-        for psi(m) by the way of a point, docs/step-sizes.md).
+        pulse, a switch or a wall longer than the time between two looks is seen; for a shorter one give `max_step`. 0
+        switches the check off (default: 128 for psi(m, t); for psi(m) by the way of a point, docs/step-sizes.md).
     progress : bool or callable
         A progress bar on standard error, or a function of the fraction done.
     checkpoint : path, optional
@@ -123,20 +116,14 @@ def integrate(
     The last step is shortened (τ(h) = remaining time, by Newton), so that t[-1] == t_span[1]. If trajectories take
     different numbers of steps, t and y are filled up with NaN unless `t_eval` is given.
 
-    An adaptive step size follows from the estimate of an embedded pair, or from the Taylor coefficients of the error at
-    the initial point of a step. Before the step is taken, psi is looked at within it, and the size is cut if psi is not
-    what the coefficients say. Pulses, ramps, switches and walls are seen if they are longer than the time between two
-    looks. No method sees what lies between its looks, so give `max_step` for a shorter pulse (docs/step-sizes.md).
-
     A trajectory ends with status -1, and with the points computed so far, if psi is not finite, the step size is below
     round-off, τ does not increase at a rate between 1/5 and 5 over the step, the equations of an implicit step have no
     solution, or `max_steps` is reached. A trajectory that reaches its end without the order of its `Corrected` step
     has status -2. The others of an ensemble go on, and `statuses` and `message` say which ended and when.
 
-    The engines "llvm" and "jax" trace and compile the step once: psi is called while the step is traced, so it must be
-    the same function all the time. Results agree with numpy to round-off, and `nfev` is the number of calls that the
-    trajectory with the most of them would make. Keep a `Propagator` for many calls: it compiles once. With JAX arrays
-    see docs/gradients.md.
+    Compiled steps call psi while they are traced, so it must be the same function all the time. Results agree with
+    numpy to round-off, and `nfev` is the number of calls that the trajectory with the most of them would make. Keep a
+    `Propagator` for many calls: it compiles once. With JAX arrays see docs/gradients.md.
 
     Examples
     --------

@@ -1,6 +1,6 @@
 """The loop over steps: sizes, events, records, and the `Solution`.
 
-`automaton` has the transitions that every trajectory makes; see docs/tutorials/integrating.md.
+`Run` has the transitions that every trajectory makes; see docs/tutorials/integrating.md.
 """
 
 from liehom.base.lazy import lazy

@@ -23,12 +23,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from liehom.base.typing import Array, Real, Values
+from liehom.base.typing import Array, Lanes, Real, Values
 from liehom.flow.action.field import GeneratorField
 from liehom.flow.series.arrays import coarse, is_jax, namespace
 from liehom.flow.steps.step import LocalStep, squared_length
 from liehom.flow.tracing.array import Traced
 from liehom.flow.tracing.loop import while_loop
+from liehom.flow.tracing.sweeps import jnp, lax
 
 LOOKS = 128  # looks across the span, by default for psi(m, t); for psi(m) there is one at the end of each step
 MAX_WAY = 0.22  # of a point between two looks at psi(m), in units of |m|
@@ -46,23 +47,13 @@ class Seen(NamedTuple):
     point: Values
 
 
-class Checked(NamedTuple):
-    """Sizes (...,) of steps after the check, how often psi was looked at and a size was cut, and the first look."""
-
-    size: Array
-    looks: Array
-    cuts: Array
-    seen: Seen
-
-
-def gap_of(looks: int | None, span: Real, field: GeneratorField) -> Real | None:
+def gap_of(looks: int | None, span: Lanes, field: GeneratorField) -> Lanes | None:
     """The longest time between two looks: None if there are none, inf if there is one in a step."""
     if looks is None:
         looks = LOOKS if field.time_dependent else -1
     if looks <= 0:
         return None if looks == 0 else float("inf")
-    gap: Real = abs(span) / (looks + OFFSET)  # type: ignore[operator]
-    return gap
+    return abs(span) / (looks + OFFSET)
 
 
 def is_unbounded(gap: Real | None) -> bool:
@@ -71,36 +62,36 @@ def is_unbounded(gap: Real | None) -> bool:
 
 
 def checked(
-    field: GeneratorField, local: LocalStep, m: Values, t: Values, h: Values, allowed: Values, left: Values, *,
-    direction: Real, gap: Real, tiny: Real, axes: int,
-) -> Checked:  # fmt: skip
-    """Sizes at most h, without sign, at which the series of a step passes all looks; below `tiny` if there are none."""
+    field: GeneratorField, local: LocalStep, m: Values, t: Lanes, h: Lanes, allowed: Lanes, left: Values, *,
+    direction: Lanes, gap: Lanes, tiny: Lanes, axes: int,
+) -> tuple[Lanes, Lanes, Lanes, Seen]:  # fmt: skip
+    """Sizes at most h, without sign, at which the series of a step passes all looks; below `tiny` if there are none.
+    Also how often psi was looked at and a size was cut, and the first look.
+    """
     xp, c = namespace(m, t, h), local.trajectory
     root = 1 / (len(c) + 1)
-    rounded: Any = squared_length(c[0])
+    rounded: Lanes = squared_length(c[0])
     if field.time_dependent and len(c) > 1:  # the times at which X is asked for are rounded too
-        time: Any = t
-        rounded = rounded + 4 * time * time * squared_length(c[1])
+        rounded = rounded + 4 * t * t * squared_length(c[1])
     floor = (8 * float(np.finfo(np.float64).eps)) ** 2 * rounded
-    bound: Any = ALLOWED_RESIDUAL * allowed
-    largest = bound * bound
+    largest = (ALLOWED_RESIDUAL * allowed) * (ALLOWED_RESIDUAL * allowed)
 
-    def look(size: Values, back: Values) -> tuple[Values, Values, Seen]:
+    def look(size: Lanes, back: Lanes) -> tuple[Lanes, Lanes, Seen]:
         """The square of the residual at a look, whether the step needs another one, and where psi was looked at."""
-        s: Any = direction * (size - back)
-        time: Any = direction * xp.minimum(direction * local.time(s), left) if local.clock else s
+        s = direction * (size - back)
+        time: Lanes = direction * xp.minimum(direction * local.time(s), left) if local.clock else s
         point, velocity = local.look(s[..., None], time[..., None])
-        lack: Any = squared_length(velocity - field.vector(point, t + time)) - floor
+        lack: Lanes = squared_length(velocity - field.vector(point, t + time)) - floor
         if axes:
             total = xp.sum(xp.maximum(lack, 0.0), axis=tuple(range(-axes, 0)), keepdims=True)
             lack = xp.broadcast_to(total, lack.shape)
-        residual: Any = size * size * lack
+        residual = size * size * lack
         return residual, xp.where(residual <= largest, back + gap < size, size >= tiny), Seen(s, point)
 
-    def again(wanted: Values, h: Values, back: Values, residual: Values, looks: Values, cuts: Values) -> list[Values]:
+    def again(wanted: Lanes, h: Lanes, back: Lanes, residual: Lanes, looks: Lanes, cuts: Lanes) -> list[Lanes]:
         passes = ~wanted | (residual <= largest)
-        gain: Any = coarse("coarse_log2", largest) - coarse("coarse_log2", residual)
-        factor: Any = 0.9 * coarse("coarse_exp2", (root / 2) * gain)
+        gain = coarse("coarse_log2", largest) - coarse("coarse_log2", residual)
+        factor: Lanes = 0.9 * coarse("coarse_exp2", (root / 2) * gain)
         factor = xp.where(factor > SMALLEST_CUT, xp.minimum(factor, LARGEST_CUT), SMALLEST_CUT)
         h, back = xp.where(passes, h, factor * _within(local, h, left, direction)), xp.where(passes, back + gap, 0.0)
         looks, cuts = looks + xp.where(wanted, 1.0, 0.0), cuts + xp.where(passes, 0.0, 1.0)
@@ -111,21 +102,20 @@ def checked(
         return [wanted & more, h, back, xp.where(wanted, new, residual), looks, cuts]
 
     size = _within(local, h, left, direction)
-    zero: Any = 0.0 * size
+    zero = 0.0 * size
     residual, wanted, seen = look(size, zero)
     _, cut, _, _, looks, cuts = repeated(again, [wanted, h, zero, residual, zero + 1, zero])
-    return Checked(cut, looks, cuts, seen)
+    return cut, looks, cuts, seen
 
 
-def _within(local: LocalStep, h: Values, left: Values, direction: Real) -> Values:
+def _within(local: LocalStep, h: Lanes, left: Values, direction: Real) -> Lanes:
     """Sizes, at most h, of steps to the end at most, beyond which psi is not asked."""
-    if not local.clock:
-        return h
-    size: Any = namespace(h, left).minimum(h, left)
-    for _ in range(FITS):
-        passed: Any = local.time(direction * size) * direction
-        size = namespace(h, left).where(passed > left, size * left / passed, size)
-    return size
+    xp = namespace(h, left)
+    h = xp.minimum(h, left) if local.clock else h
+    for _ in range(FITS if local.clock else 0):
+        passed: Lanes = local.time(direction * h) * direction
+        h = xp.where(passed > left, h * left / passed, h)
+    return h
 
 
 def repeated(body: Callable[..., list[Any]], state: list[Any], limit: int = MAX_LOOKS) -> Sequence[Any]:
@@ -134,13 +124,11 @@ def repeated(body: Callable[..., list[Any]], state: list[Any], limit: int = MAX_
     if isinstance(first, Traced):
         return while_loop(lambda *s: ((new := body(*s)), new[0]), state, first.tape, limit, guarded=True)
     if is_jax(first):
-        from jax import lax, numpy as jnp
-
-        def again(s: list[Any]) -> list[Any]:
-            return [x.astype(y.dtype) for x, y in zip(body(*s), state, strict=True)]
-
-        last: list[Any] = lax.while_loop(lambda s: jnp.any(s[0]), again, state)
-        return last
+        return lax.while_loop(
+            lambda s: jnp.any(s[0]),
+            lambda s: [x.astype(y.dtype) for x, y in zip(body(*s), state, strict=True)],
+            state,
+        )
     for _ in range(limit):
         if not np.any(state[0]):
             break

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cache
 from itertools import pairwise
 from math import comb
-from typing import Any, NamedTuple, final
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from liehom.base.errors import ConvergenceError
-from liehom.base.typing import Array, BooleanArray, Real, Values
+from liehom.base.typing import Array, BooleanArray, Lanes, Real, Values
 from liehom.flow.action.field import GeneratorField
 from liehom.flow.action.space import Action
 from liehom.flow.run.check import LOOKS, MAX_WAY, Seen, checked, is_unbounded
@@ -41,22 +40,17 @@ MAX_HALVINGS = 40
 SLACK = 1e-9  # a step that ends this close to the end of the integration, in units of the step, ends there
 
 
-def clock_at(local: LocalStep, h: Values) -> tuple[BooleanArray, Array]:
+def clock_at(local: LocalStep, h: Lanes) -> tuple[Lanes, Lanes]:
     """Whether the clock is admissible over [0, h], bool (...,), and the time τ(h), both for h of shape (...,)."""
-    size: Any = h
-    if not local.clock:
-        return np.ones(np.shape(size), dtype=bool), size
-    passed: Any = local.time(size)
-    return is_admissible(local.clock, size), passed
+    return (is_admissible(local.clock, h), local.time(h)) if local.clock else (np.ones(np.shape(h), dtype=bool), h)
 
 
-def is_admissible(clock: Sequence[tuple[int, Values]], h: Values) -> BooleanArray:
+def is_admissible(clock: Sequence[tuple[int, Values]], h: Lanes) -> BooleanArray:
     """Whether all Bernstein coefficients of τ' are between the admissible rates, so that τ' is on all of [0, h]."""
-    size: Any = h
     rows = _bernstein(max(k for k, _ in clock) - 1)
-    rows = rows.reshape(*rows.shape, *[1] * np.ndim(size))
-    rates: Any = sum((rows[:, k - 1] * (k * c * size ** (k - 1)) for k, c in clock), 1.0)
-    return ((rates > MIN_RATE) & (rates < MAX_RATE)).all(axis=0) | (size == 0)
+    rows = rows.reshape(*rows.shape, *[1] * np.ndim(h))
+    rates: Any = sum((rows[:, k - 1] * (k * c * h ** (k - 1)) for k, c in clock), 1.0)
+    return ((rates > MIN_RATE) & (rates < MAX_RATE)).all(axis=0) | (h == 0)
 
 
 @cache
@@ -74,7 +68,7 @@ def size_for(local: LocalStep, time: Array, guess: Array) -> Array:
     """Step sizes s (...,) with τ(s) = time, of the sign of time; 0 where time is 0, NaN if no s is found."""
     if not local.clock:
         return time + 0 * guess
-    reached: Any = local.time(guess)
+    reached: Lanes = local.time(guess)
     fraction = np.divide(time, reached, out=np.ones_like(time), where=reached != 0)
     within = (fraction >= 0) & (fraction <= 1)
     s = np.where(within, fraction * guess, time)
@@ -133,22 +127,12 @@ MAX_TRIALS = 200  # number of attempts to find out which trajectories a step can
 MIN_ROUNDOFFS = 10.0  # the smallest relative tolerance, in units of round-off
 
 
-@final
-@dataclass(frozen=True, slots=True)
-class Tolerance:
-    """Error allowed in a step: at most atol + rtol |m|, as root mean squares over the coordinates and the last `axes`
-    leading axes (the sites of a lattice), and at least 10 units of round-off of m. Compiled steps give tracers.
+def allowed_error(rtol: Real, atol: Real, m: Lanes, axes: int = 0) -> Array:
+    """2-norm (...,) of the error that is allowed in a step from m (..., N): atol + rtol |m|, as root mean squares over
+    the coordinates and the last `axes` leading axes (the sites of a lattice), but at least 10 units of round-off of m.
     """
-
-    rtol: Real
-    atol: Real
-    axes: int = 0
-
-    def norm(self, m: Values) -> Array:
-        """2-norm of the error that is allowed at the points m (..., N), shape (...,)."""
-        point: Any = m
-        relative = namespace(self.rtol).maximum(self.rtol, MIN_ROUNDOFFS * float(np.finfo(point.dtype).eps))
-        return over_sites(self.atol * point.shape[-1] ** 0.5 + relative * length(point), self.axes)
+    relative = namespace(rtol).maximum(rtol, MIN_ROUNDOFFS * float(np.finfo(m.dtype).eps))
+    return over_sites(atol * m.shape[-1] ** 0.5 + relative * length(m), axes)
 
 
 def whole_lattice(where: BooleanArray, axes: int) -> BooleanArray:
@@ -162,27 +146,23 @@ def whole_lattice(where: BooleanArray, axes: int) -> BooleanArray:
 class SizeLimits(NamedTuple):
     """Tolerances and bounds of adaptive step sizes: numbers of a run, or tracers for them."""
 
-    rtol: Real
-    atol: Real
-    max_step: Real
-    end: Real  # the time at the end
-    direction: Real  # 1, or -1 if time decreases
-    tiny: Real  # below this size time does not advance
-    gap: Real | None  # the longest time between two looks at psi (`liehom.flow.run.check`); None for no looks
+    rtol: Lanes
+    atol: Lanes
+    max_step: Lanes
+    end: Lanes  # the time at the end
+    direction: Lanes  # 1, or -1 if time decreases
+    tiny: Lanes  # below this size time does not advance
+    gap: Lanes | None  # the longest time between two looks at psi (`liehom.flow.run.check`); None for no looks
     moves: float = float("inf")  # bound for the way of a point in a step, in units of |m|
-
-    def norm(self, m: Values, axes: int) -> Array:
-        """2-norm of the error that is allowed at the points m (..., N), shape (...,)."""
-        return Tolerance(self.rtol, self.atol, axes).norm(m)
 
 
 class Tried(NamedTuple):
     """Sizes (...,) of the next steps, without sign."""
 
-    size: Array
-    good: BooleanArray  # whether time advances by the size; if not, the run ends the trajectory
-    looks: Values  # looks at psi within the step, and how often they have cut its size
-    cuts: Values
+    size: Lanes
+    good: Lanes  # whether time advances by the size; if not, the run ends the trajectory
+    looks: Lanes  # at psi within the step, and how often they have cut its size
+    cuts: Lanes
     seen: Seen | None = None  # the first look
 
 
@@ -191,30 +171,35 @@ def tried_size(
     proposal: Values, looked_at: GeneratorField,
 ) -> Tried:  # fmt: skip
     """The sizes of the next steps, at most the proposal; what psi does within the step is seen in `looked_at`."""
-    xp, axes = namespace(m, t), len(psi.field.sites)
-    left: Any = xp.abs(limits.end - t)
-    bound: Any = xp.minimum(proposal, largest_size(limits.max_step, left, SLOW_CLOCK if local.clock else 1.0))
-    looks: Any = 0.0
+    xp, axes, embedded = namespace(m, t), len(psi.field.sites), local.estimate_order is not None
+    left = xp.abs(limits.end - t)
+    h: Lanes = xp.minimum(proposal, largest_size(limits.max_step, left, SLOW_CLOCK if local.clock else 1.0))
+    looks: Lanes = 0.0
     seen, cuts, moves = None, looks, limits.moves
-    embedded = local.estimate_order is not None
     if embedded and limits.gap is not None:
         if is_unbounded(limits.gap):
             moves = min(moves, MAX_WAY / local.widest_gap)
         else:
-            bound = xp.minimum(bound, limits.gap / local.widest_gap)
+            h = xp.minimum(h, limits.gap / local.widest_gap)
     if moves < np.inf:
-        bound = xp.minimum(bound, moves * time_scale(psi.field, m, t))
-    h: Any = bound
+        h = xp.minimum(h, moves * time_scale(psi.field, m, t))
     if not embedded:
-        known_trajectory(psi, local, m, t, order)
-        allowed, speed = limits.norm(m, axes), over_sites(length(local.trajectory[0]), axes)
+        if not local.trajectory:  # of a step that has not expanded it
+            flow_series(psi.field, m, order + ERROR_TERMS, t).note(local, order + ERROR_TERMS)
+        allowed, speed = allowed_error(limits.rtol, limits.atol, m, axes), over_sites(length(local.trajectory[0]), axes)
         if limits.gap is not None and psi.field.time_dependent:
             # terms far below the allowed error are not compared with |X| h, else steps go to 0 at a time when X does
-            speed = xp.maximum(speed, allowed / bound)
-        gap: Any = limits.gap
+            speed = xp.maximum(speed, allowed / h)
+        gap = limits.gap
         if is_unbounded(gap) and not local.looks_ahead:  # exponentials may turn a point many times in a step
             gap = xp.maximum(left / LOOKS, MAX_WAY * over_sites(length(m), axes) / speed)
-        h = known_size(action, local, m, order, StepLimits(allowed, speed, bound, axes))
+        bounds = StepLimits(allowed, speed, h, axes)
+        h = local.size(bounds)
+        if h is None:  # the step does not know it: from the Taylor coefficients of its error
+            series = step_series(action, local, m, order + ERROR_TERMS)
+            terms = range(order + 1, order + ERROR_TERMS + 1)
+            local.defects = tuple((k, length(local.trajectory[k - 1] - series.coefficient(k))) for k in terms)
+            h = size_from_defects(local.defects, *bounds)
         if limits.gap is not None:
             h, looks, cuts, seen = checked(
                 looked_at, local, m, t, h, allowed, left,
@@ -223,7 +208,7 @@ def tried_size(
     return Tried(h, is_large_enough(h, limits.tiny, left), looks, cuts, seen)
 
 
-def first_size(limits: SizeLimits, local: LocalStep, psi: Generator, m: Values, t: Values) -> Values | None:
+def first_size(limits: SizeLimits, local: LocalStep, psi: Generator, m: Values, t: Values) -> Lanes:
     """Size of the first step of an embedded pair, without sign; None where the Taylor coefficients give it."""
     if local.estimate_order is None:
         return None
@@ -237,10 +222,9 @@ def largest_size(max_step: Real, left: Values, slow: float = SLOW_CLOCK) -> Arra
     return namespace(max_step, left).minimum(max_step, slow * left)
 
 
-def is_large_enough(h: Values, tiny: Real, left: Real) -> BooleanArray:
+def is_large_enough(h: Lanes, tiny: Real, left: Real) -> BooleanArray:
     """Whether steps of these sizes advance time, bool (...,); False for NaN."""
-    size: Any = h
-    return size >= namespace(tiny, left).minimum(tiny, left)
+    return h >= namespace(tiny, left).minimum(tiny, left)
 
 
 def time_scale(field: GeneratorField, m: Values, t: Values) -> Array:
@@ -252,31 +236,12 @@ def time_scale(field: GeneratorField, m: Values, t: Values) -> Array:
     return size / speed
 
 
-def known_trajectory(psi: Generator, local: LocalStep, m: Values, t: Values, order: int) -> None:
-    """Expand the trajectory to `ERROR_TERMS` orders above the order of a step that has not done so."""
-    if not local.trajectory:
-        flow_series(psi.field, m, order + ERROR_TERMS, t).note(local, order + ERROR_TERMS)
-
-
-def known_size(action: Action, local: LocalStep, m: Values, order: int, limits: StepLimits) -> Values:
-    """The size that the step knows in advance (`LocalStep.size`), else from the Taylor coefficients of its error."""
-    size = local.size(limits)
-    if size is not None:
-        return size
-    step = step_series(action, local, m, order + ERROR_TERMS)
-    terms = range(order + 1, order + ERROR_TERMS + 1)
-    local.defects = tuple((k, length(local.trajectory[k - 1] - step.coefficient(k))) for k in terms)
-    return size_from_defects(local.defects, *limits)
-
-
-def judgement(
-    limits: SizeLimits, local: LocalStep, m: Values, size: Values, axes: int = 0
-) -> tuple[Values | bool, Values]:
+def judgement(limits: SizeLimits, local: LocalStep, m: Values, size: Lanes, axes: int = 0) -> tuple[Lanes, Lanes]:
     """Whether a step of signed size (..., 1) is accepted, and the next size; one for all of the last `axes` axes."""
-    h: Values = size[..., 0]
     if local.estimate_order is None:
-        return True, MAX_GROWTH * abs(h)
-    return judged(local.estimate(size), limits.norm(m, axes), h, local.estimate_order, axes)
+        return True, MAX_GROWTH * abs(size[..., 0])
+    allowed = allowed_error(limits.rtol, limits.atol, m, axes)
+    return judged(local.estimate(size), allowed, size[..., 0], local.estimate_order, axes)
 
 
 def judged(error: Values, allowed: Values, h: Values, order: int, axes: int = 0) -> tuple[BooleanArray, Array]:

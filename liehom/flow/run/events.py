@@ -17,10 +17,10 @@ from typing import Any, NamedTuple, TypeAlias, cast, final
 import numpy as np
 
 from liehom.base.errors import InputError, displayed
-from liehom.base.typing import Array, BooleanArray, Pytree
+from liehom.base.typing import Array, BooleanArray, Lanes, Pytree
 from liehom.flow.action.components import called_as_event, guarded
 from liehom.flow.run.check import repeated
-from liehom.flow.run.records import EventLog
+from liehom.flow.run.records import EventLog, Occurrence, occurrences_of
 from liehom.flow.tracing.array import Traced
 
 ITERATIONS = 200
@@ -41,7 +41,7 @@ class Look(NamedTuple):
     # (i, place, value, inwards, here) -> the derivative of event function i in the direction of integration, for the
     # trajectories `here`, at a place (t, y) of known value; inwards is 1 at the start of a step, -1 at its end
     slope: Callable[[int, tuple[Array, Array], Array, int, BooleanArray], Array]
-    h: Array  # the size of the step, (...,)
+    h: Lanes  # the size of the step, (...,)
     before: tuple[Array, Array]  # at the ends of the step
     after: tuple[Array, Array]
     moves: BooleanArray  # the trajectories that make it
@@ -72,16 +72,12 @@ class Events:
         """Number of event functions."""
         return len(self.functions)
 
-    def value(self, i: int, t: Array, y: Array) -> Array:
+    def value(self, i: int, t: Lanes, y: Lanes) -> Lanes:
         """g_i(t, y), shape (...,)."""
-        time: Any = t
-        if not isinstance(time, Traced) and not time.ndim:
-            time = np.asarray(t)[()]
-        answer = guarded(self.functions[i], f"events[{i}]", time, y)
-        point: Any = y
-        if isinstance(point, Traced):  # a function that ignores y returns a number
-            value: Any = Traced(point.tape, answer)
-            return value
+        t = t if isinstance(t, Traced) or t.ndim else np.asarray(t)[()]
+        answer = guarded(self.functions[i], f"events[{i}]", t, y)
+        if isinstance(y, Traced):  # a function that ignores y returns a number
+            return Traced(y.tape, answer)
         try:
             value = np.asarray(answer)
             value = value if value.dtype.kind == "f" else value.astype(np.float64, casting="same_kind")
@@ -115,28 +111,20 @@ class Events:
         self, log: EventLog, look: Look, before: list[Array], after: list[Array], fresh: BooleanArray
     ) -> tuple[Array, BooleanArray]:
         """Record the events in a step; returns the size up to the first terminal one, and for which trajectories."""
-        halted, stop = np.zeros(np.shape(look.h), dtype=bool), look.h
-        zeros: list[tuple[int, BooleanArray, Array]] = []
+        occurrences: list[Occurrence] = []
         for i, (start, end) in enumerate(zip(before, after, strict=True)):
-            at_start = look.moves & fresh & self.left(i, start, end)
-            if at_start.any():
-                log.add(i, at_start, *look.before, counted=False)
-            count = log.occurrences[i]
+            at_start = occurrences_of(i, look.moves & fresh & self.left(i, start, end), 0 * look.h, *look.before)
+            occurrences += [x._replace(counted=False) for x in at_start]
             for here, s in self.zeros(i, look, start, end):
-                count = count + here
-                ends = here & (count >= self.terminal[i])
-                stop = np.where(ends & (np.abs(s) <= np.abs(stop)), s, stop)
-                halted = halted | ends
-                zeros.append((i, here, s))
-        for i, here, s in zeros:
-            kept = here & (np.abs(s) <= np.abs(stop))
-            if kept.any():
-                log.add(i, kept, *look.position(np.where(kept, s, 0)))
+                occurrences += occurrences_of(i, here, s, *look.position(np.where(here, s, 0)))
+        stop, halted = np.array(look.h), np.zeros(np.shape(look.h), dtype=bool)
+        for lane, x in log.record(occurrences, self.terminal).items():
+            stop.flat[lane], halted.flat[lane] = x.s, True
         return stop, halted
 
     def zeros(self, i: int, look: Look, start: Array, end: Array) -> list[tuple[BooleanArray, Array]]:
         """The zeros of g_i within a step, in the order of time: for which trajectories, and their sizes s in (0, h]."""
-        h: Any = look.h
+        h = look.h
 
         def g(s: Array) -> Array:
             return self.value(i, *look.position(s)).astype(s.dtype)
@@ -179,10 +167,9 @@ class Events:
         return here & (value < 0), s, sign * value
 
 
-def _some(where: object) -> bool:
+def _some(where: Lanes) -> bool:
     """Whether a condition holds somewhere, or may do so because its values are not known."""
-    condition: Any = where
-    return isinstance(condition, Traced) or bool(np.any(condition))
+    return isinstance(where, Traced) or bool(np.any(where))
 
 
 def lowest(

@@ -87,13 +87,10 @@ class Options:
 
     def fixed_text(self) -> str:
         """String of the scalar options that must not change when a run is continued."""
-        return (
-            f"{'adaptive' if self.dt is None else 'fixed'} {self.rtol} {self.atol} "
-            f"{'steps' if self.t_eval is None else 't_eval'} {self.dense_output} "
-            f"{self.clock} {self.max_step} {self.first_step}"
-            + (f" {self.min_step}" if self.min_step else "")
-            + (f" looks {self.looks}" if self.dt is None else "")
-        )
+        kind, output = "adaptive" if self.dt is None else "fixed", "steps" if self.t_eval is None else "t_eval"
+        numbers = self.rtol, self.atol, output, self.dense_output, self.clock, self.max_step, self.first_step
+        least, looks = [self.min_step] * (self.min_step != 0), [] if self.dt is not None else ["looks", self.looks]
+        return " ".join(map(str, (kind, *numbers, *least, *looks)))
 
 
 def overall_status(statuses: IntegerArray) -> int:

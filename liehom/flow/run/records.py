@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, final
+from typing import Any, NamedTuple, final
 
 import numpy as np
 import numpy.typing as npt
 
-from liehom.base.typing import Array, BooleanArray, IntegerArray, Real, Values
+from liehom.base.typing import Array, BooleanArray, IntegerArray, Lanes, Real, Values
 from liehom.flow.action.space import Action
 from liehom.flow.steps.first_integral import combination
 from liehom.flow.steps.step import Diagnostics, LocalStep, Step
@@ -231,10 +231,8 @@ class Report:
 
 NEUTRAL = {"max": -np.inf, "min": np.inf, "sum": 0.0}  # the total of a diagnostic before the first step
 LOST = "lost"  # the diagnostic that says whether a step misses its order: its first time is recorded, and not its total
-OF_CORRECTIONS = ("equilibria", "failed", "near", "short", "residual", "singular", "rank")
-"""Diagnostics of a corrected step, which have entries of their own in a `Report`."""
-OF_CHECK = frozenset(["looks", "cuts"])
-"""Sums over steps, of the looks at psi within steps and of the sizes that they cut: entries of a `Report`."""
+REPORTED = ("equilibria", "failed", "near", "short", "residual", "singular", "rank", "looks", "cuts")
+"""Diagnostics of corrected and of adaptive steps, which have entries of their own in a `Report`."""
 OF_CONSERVATION = "conservation_"  # prefix of the diagnostics of a conserving step
 
 
@@ -246,7 +244,7 @@ class StepStatistics:
         self._step, self._shape = step, shape
         # arrays are replaced, never written into: older states stay whole
         self._totals: dict[str, Array] = {}  # "max.name", "min.name", "sum.name"
-        self._unkept_from: Array = np.full(shape, np.nan)
+        self.unkept_from: Array = np.full(shape, np.nan)  # time of the first step that did not keep the order, or NaN
         self._places: dict[str, npt.NDArray[Any]] = {}  # (t, m) by "place.name", and "detail.name"
 
     def take(self, diagnostics: Diagnostics, local: LocalStep, t: Array, m: Array, active: BooleanArray) -> None:
@@ -255,7 +253,7 @@ class StepStatistics:
             if name == LOST:
                 lost = active & value
                 if lost.any():
-                    self._unkept_from = np.where(lost & np.isnan(self._unkept_from), t, self._unkept_from)
+                    self.unkept_from = np.where(lost & np.isnan(self.unkept_from), t, self.unkept_from)
                 continue
             old, new = self._total(name, kind), np.broadcast_to(np.asarray(value, dtype=float), self._shape)
             better = active & (new != 0 if kind == "sum" else new > old if kind == "max" else new < old)
@@ -300,10 +298,10 @@ class StepStatistics:
         """Record the totals of compiled steps, for some trajectories of the flattened ensemble."""
         for name, (value, kind) in totals.items():
             if name == "unkept":
-                times = np.array(self._unkept_from).reshape(-1)
+                times = np.array(self.unkept_from).reshape(-1)
                 new = (value > 0) & np.isnan(times[lanes])
                 times[lanes] = np.where(new, time_of(value, ends), times[lanes])
-                self._unkept_from = times.reshape(self._shape)
+                self.unkept_from = times.reshape(self._shape)
                 continue
             rows = np.array(self._total(name, kind)).reshape(-1)
             join = {"max": np.maximum, "min": np.minimum, "sum": np.add}[kind]
@@ -311,11 +309,6 @@ class StepStatistics:
             self._totals[f"{kind}.{name}"] = rows.reshape(self._shape)
 
     # -- results -----------------------------------------------------------------------------------------
-    @property
-    def unkept_from(self) -> Array:
-        """Time of the first step that did not keep the order, shape (...,); NaN if there is none."""
-        return self._unkept_from
-
     @property
     def loss(self) -> str:
         """Why the order was not kept, a clause; empty if it was kept."""
@@ -337,90 +330,66 @@ class StepStatistics:
     def _order(self) -> int:
         return self._step.order - int(self._largest("short"))
 
+    def _shown(self, name: str) -> tuple[float, tuple[float, ...]] | None:
+        """(t, point) at which a diagnostic is noted; None if it is not."""
+        place = self._places.get(f"place.{name}")
+        return None if place is None else (float(place[0]), tuple(float(x) for x in place[1:]))
+
     def report(
-        self,
-        action: Action,
-        clock: str,
-        orbit_dimension: int | IntegerArray,
-        direction: float = 1.0,
-        stopped_at: float | None = None,
-        check: str = "",
-        engine: str = "",
-    ) -> Report:
+        self, action: Action, clock: str, orbit_dimension: int | IntegerArray, direction: float = 1.0,
+        stopped_at: float | None = None, check: str = "", engine: str = "",
+    ) -> Report:  # fmt: skip
         """The statistics as a `Report`."""
-        from_times = direction * self._unkept_from
-        place = self._places.get("place.singular")
+        from_times, step = direction * self.unkept_from, self._step
         return Report(
-            step=repr(self._step),
-            exponential=action.exponential.name,
-            clock=clock,
-            base_order=self._step.base_order,
-            order=self._order(),
-            wanted_order=self._step.order,
-            worst_residual=self._largest("residual"),
-            singular_value=self._smallest("singular"),
-            singular_at=None if place is None else _shown(place),
-            rank=self._rank("rank"),
-            orbit_dimension=int(np.max(orbit_dimension, initial=0)),
-            failed_steps=self._count("failed"),
-            equilibria=self._count("equilibria"),
-            inner_product=action.inner_product.name,
-            conservation=self._conservation(),
-            near_steps=self._count("near"),
+            step=repr(step), exponential=action.exponential.name, clock=clock, base_order=step.base_order,
+            order=self._order(), wanted_order=step.order, worst_residual=self._largest("residual"),
+            singular_value=self._smallest("singular"), singular_at=self._shown("singular"), rank=self._rank("rank"),
+            orbit_dimension=int(np.max(orbit_dimension, initial=0)), failed_steps=self._count("failed"),
+            equilibria=self._count("equilibria"), inner_product=action.inner_product.name,
+            conservation=self._conservation(), near_steps=self._count("near"),
             unkept_from=None if bool(np.isnan(from_times).all()) else direction * float(np.nanmin(from_times)),
-            stopped_at=stopped_at,
-            diagnostics=self._others(),
-            check=check,
-            looks=self._count("looks"),
-            cuts=self._count("cuts"),
-            engine=engine,
-        )
+            stopped_at=stopped_at, diagnostics=self._others(), check=check, looks=self._count("looks"),
+            cuts=self._count("cuts"), engine=engine,
+        )  # fmt: skip
 
     def _conservation(self) -> ConservationReport | None:
         """The report on first integrals; None for a step that conserves none."""
         p = OF_CONSERVATION
         if f"max.{p}defect" not in self._totals:
             return None
-        place = self._places.get(f"place.{p}short")
+        place = self._shown(f"{p}short")
         names = ", ".join(combination(z) for z in self._places.get(f"detail.{p}short", ()))
         return ConservationReport(
-            rank=self._rank(p + "rank"),
-            wanted=int(self._largest(p + "wanted")),
-            iterations=int(self._largest(p + "iterations")),
-            defect=self._largest(p + "defect"),
-            missed_steps=self._count(p + "missed"),
-            left_steps=self._count(p + "left"),
-            short_steps=self._count(p + "short"),
-            short_at=None if place is None else (*_shown(place), names),
+            rank=self._rank(p + "rank"), wanted=int(self._largest(p + "wanted")),
+            iterations=int(self._largest(p + "iterations")), defect=self._largest(p + "defect"),
+            missed_steps=self._count(p + "missed"), left_steps=self._count(p + "left"),
+            short_steps=self._count(p + "short"), short_at=None if place is None else (*place, names),
             linear=self._largest(p + "linear") > 0,
-        )
+        )  # fmt: skip
 
     def _others(self) -> tuple[tuple[str, str, float], ...]:
         """(name, kind, total over all trajectories) of the diagnostics without an entry of their own."""
         return tuple(
             (name, kind, float(getattr(total, kind)()))
             for (kind, _, name), total in ((key.partition("."), total) for key, total in self._totals.items())
-            if name not in OF_CORRECTIONS and name not in OF_CHECK and not name.startswith(OF_CONSERVATION)
+            if name not in REPORTED and not name.startswith(OF_CONSERVATION)
         )
 
     # -- checkpoints -------------------------------------------------------------------------------------
     def arrays(self) -> dict[str, npt.NDArray[Any]]:
         """The state as named arrays, for a checkpoint."""
-        return {**self._totals, **self._places, "unkept_from": self._unkept_from}
+        return {**self._totals, **self._places, "unkept_from": self.unkept_from}
 
     def restore(self, arrays: Mapping[str, npt.NDArray[Any]]) -> None:
         """Replace the state by one that `arrays` returned."""
         self._totals = {key: x for key, x in arrays.items() if key.split(".")[0] in NEUTRAL}
         self._places = {key: x for key, x in arrays.items() if key.split(".")[0] in ("place", "detail")}
-        self._unkept_from = arrays.get("unkept_from", np.full(self._shape, np.nan))
+        self.unkept_from = arrays.get("unkept_from", np.full(self._shape, np.nan))
 
 
 def _place(index: tuple[Any, ...], t: Array, m: Array) -> Array:
     return np.array([t[index], *m[index]], dtype=float)
-
-
-def _shown(place: Array) -> tuple[float, tuple[float, ...]]:
-    return float(place[0]), tuple(float(x) for x in place[1:])
 
 
 def bounds_of(ends: Sequence[float]) -> tuple[float, float]:
@@ -549,6 +518,26 @@ class Samples:
         self.points, self.done = arrays["points"], arrays["done"]
 
 
+class Occurrence(NamedTuple):
+    """A zero of an event function at the size s within a step, or at the `distance` |s|, for one trajectory."""
+
+    step: int
+    distance: Any
+    event: int
+    lane: int
+    s: Any
+    t: Any
+    y: Array
+    counted: bool = True  # towards the number that ends the trajectory
+
+
+def occurrences_of(event: int, here: BooleanArray, s: Lanes, t: Lanes, y: Lanes) -> list[Occurrence]:
+    """The occurrences at (t, y) of the trajectories `here`, which are at the sizes s of a step."""
+    sizes, times, points = np.reshape(s, -1), np.reshape(t, -1), np.reshape(y, (-1, y.shape[-1]))
+    lanes = np.flatnonzero(here).tolist()
+    return [Occurrence(0, abs(sizes[b]), event, b, sizes[b], times[b], points[b]) for b in lanes]
+
+
 @final
 class EventLog:
     """Log of the events that occurred: rows (event, trajectory, time, point), for each trajectory in order of time."""
@@ -558,20 +547,25 @@ class EventLog:
         self.occurrences: IntegerArray = np.zeros((count, *shape), dtype=int)
         self.rows: list[tuple[int, int, np.floating[Any], Array]] = []
 
-    def add(self, i: int, here: BooleanArray, t: Array, y: Array, *, counted: bool = True) -> None:
-        """Record event i at (t, y) for the trajectories `here`, `counted` towards the number that ends them."""
-        if counted:
-            more = np.zeros_like(self.occurrences)
-            more[i] = here
-            self.occurrences = self.occurrences + more
-        times, points = np.reshape(t, -1), np.reshape(y, (-1, self._size))
-        self.rows += [(i, int(b), times[b], points[b]) for b in np.flatnonzero(here)]
+    def record(self, occurrences: Sequence[Occurrence], terminal: Sequence[float]) -> dict[int, Occurrence]:
+        """Log occurrences in order of time, up to those that end a trajectory, which are returned by trajectory."""
+        halts, counts = dict[int, Occurrence](), np.array(self.occurrences)
+        flat = counts.reshape(len(counts), -1)
+        for x in sorted(occurrences, key=lambda x: x[:3]):
+            halt = halts.get(x.lane)
+            if halt is not None and x[:2] > halt[:2]:
+                continue
+            self.rows.append((x.event, x.lane, x.t, x.y))
+            flat[x.event, x.lane] += x.counted
+            if x.counted and flat[x.event, x.lane] >= terminal[x.event]:
+                halts.setdefault(x.lane, x)
+        self.occurrences = counts
+        return halts
 
     def lists(self) -> tuple[list[npt.NDArray[Any]], list[npt.NDArray[Any]]]:
         """(t_events, y_events) of a `Solution`."""
         size = int(np.prod(self._shape, dtype=int))
-        groups: list[list[list[tuple[np.floating[Any], Array]]]]
-        groups = [[[] for _ in range(size)] for _ in range(self._count)]
+        groups: list[list[list[Any]]] = [[[] for _ in range(size)] for _ in range(self._count)]
         for i, b, t, y in self.rows:
             groups[i][b].append((t, y))
         times = [[np.array([t for t, _ in lane]) for lane in group] for group in groups]
@@ -580,12 +574,9 @@ class EventLog:
 
     def arrays(self) -> dict[str, npt.NDArray[Any]]:
         """The state as named arrays, for a checkpoint."""
-        return {
-            "occurrences": self.occurrences,
-            "index": np.array([row[:2] for row in self.rows], dtype=int).reshape(-1, 2),
-            "t": np.array([row[2] for row in self.rows]),
-            "y": np.array([row[3] for row in self.rows]),
-        }
+        index = np.array([row[:2] for row in self.rows], dtype=int).reshape(-1, 2)
+        t, y = (np.array([row[k] for row in self.rows]) for k in (2, 3))
+        return {"occurrences": self.occurrences, "index": index, "t": t, "y": y}
 
     def restore(self, arrays: Mapping[str, npt.NDArray[Any]]) -> None:
         """Replace the state by one that `arrays` returned."""

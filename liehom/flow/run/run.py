@@ -141,7 +141,7 @@ class RunState:
         return {"path": self.path, "account": self.statistics, "found": self.event_log, **samples}
 
 
-# The automaton of a run: the transitions that every trajectory (lane) makes, written once.
+# The transitions that every trajectory (lane) of a run makes, written once.
 # 1. Propose: the step at (t, m), as a function of its size (`Step.at`).
 # 2. Size: by the tolerance, `LocalStep.size` or the size that the last estimate left.
 # 3. Fit: shortened so that it ends at the end of the time span.
@@ -210,7 +210,7 @@ class CountedField(GeneratorField):
 
     __slots__ = ("_moving", "_run")
 
-    def __init__(self, field: GeneratorField, run: Automaton, orbit_dimension: int | IntegerArray) -> None:
+    def __init__(self, field: GeneratorField, run: Run, orbit_dimension: int | IntegerArray) -> None:
         # the maps of the field are shared, not computed again
         self.representation, self.source = field.representation, field._components
         self._action, self._components, self._dimension = field._action, field._components, field._dimension
@@ -230,8 +230,12 @@ class CountedField(GeneratorField):
             raise
 
 
-class Automaton:
-    """The transitions of the lanes of a run; `advance` makes them."""
+@final
+class Run:
+    """An integration: what is integrated, its `state`, the loop over steps, and the transitions of the lanes.
+
+    With compiled code, the fast path makes ordinary steps, those without an output time, an end or a failure in them.
+    """
 
     def __init__(self, action: Action, psi: Generator, step: Step, span: Span, start: Array, options: Options) -> None:
         self.action, self.options, self.span = action, options, span
@@ -246,44 +250,53 @@ class Automaton:
         self.rest = self.dtype.type(8 * np.finfo(self.dtype).eps * max(abs(span[0]), abs(span[1])))
         self.tiny = max(float(self.rest), options.least_step)  # the smallest step size
         self.looked: Diagnostics = {}  # what the last step was checked by
-        end: Any = span[1]  # in the type of the points, as `direction`
-        direction: Any = self.direction
         self.limits: SizeLimits = SizeLimits(
-            options.rtol, options.atol, options.max_step, end, direction, self.tiny,
-            gap=gap_of(options.looks, end - span[0], psi.field),
+            options.rtol, options.atol, options.max_step, span[1], self.direction, self.tiny,
+            gap=gap_of(options.looks, span[1] - span[0], psi.field),
             moves=np.inf if options.events is None else MAX_MOVE_WITH_EVENTS,
         )  # fmt: skip
         self.keeps: bool = options.t_eval is None or options.dense_output
         self.logs = LOGGER.isEnabledFor(logging.DEBUG)  # asked once: a run without a log pays nothing for it
         self.step = step.prepare(action, self.psi, self.start, np.full(self.shape, span[0], dtype=self.dtype))
+        events = None if options.events is None else Events(options.events, psi.field.args)
+        total = None
+        if options.dt is not None:  # a rest below 1e-9 dt, or below round-off, is not a step
+            total = np.maximum(np.ceil(abs(span[1] - span[0]) / options.dt - (SLACK + self.rest / options.dt)), 1)
+        self.stops: Stops = Stops(span[1], total, events)
+        self.fast_path: Callable[[Run], bool] | None = None  # makes steps; returns whether there are more to be made
+        self.engines: dict[str, None] = {}  # what has made steps, in order
+        self.state: RunState = self._initial_state(start)
 
     # -- the transitions ---------------------------------------------------------------------------------
-    def advance(self, now: RunState, stops: Stops) -> None:
+    def advance(self, now: RunState) -> None:
         """Make one step of all active lanes, which some of them may reject."""
         active, self.tried = now.active, None
         now.m = in_lanes(now.m)
         terms = ERROR_TERMS if self.options.dt is None else 0
         try:
             local = self.step.at(self.action, self.psi, now.m, now.t[..., None], error_terms=terms)
-            proposal = self._proposed(now, stops, local)
+            proposal = self._proposed(now, local)
         except (np.linalg.LinAlgError, ConvergenceError) as error:
             if np.array_equal(active, now.active):  # else the step is tried again without those that failed
-                self._diagnose(now, stops, error)
+                self._diagnose(now, error)
         else:
             if self.logs:
                 proposal.log(now.active)
             if proposal.moves.any():
-                self._commit(now, *self._looked_into(now, stops, proposal))
+                self._commit(now, *self._looked_into(now, proposal))
         now.calls, self.calls = now.calls + self.calls, 0
 
-    def _proposed(self, now: RunState, stops: Stops, local: LocalStep) -> StepProposal:
+    def _proposed(self, now: RunState, local: LocalStep) -> StepProposal:
         """The step of the right size, of the lanes that accept it."""
         adaptive = self.options.dt is None
-        size = self._size(now, stops, local) if self.options.dt is None else self.options.dt
-        h, after, last = self._fitted(now, stops, local, size)
+        size = self._size(now, local) if self.options.dt is None else self.options.dt
+        h, after, last = self._fitted(now, local, size)
         self.tried = local, h
         reached: Any = local.point(h[..., None])
-        moves = now.active & self._judged(now, local, h) if adaptive else now.active
+        moves = now.active
+        if adaptive:
+            accepted, now.h = judgement(self.limits, local, now.m, h[..., None], self.axes)
+            moves = moves & accepted
         diagnostics = {**local.diagnostics(h[..., None]), **self.looked}
         good = np.isfinite(reached).all(axis=-1)
         usable = ~whole_lattice(~(good & local.valid(h[..., None])), self.axes)
@@ -299,12 +312,11 @@ class Automaton:
         reached = reached.astype(self.dtype, copy=False)
         return StepProposal(local, now.t, now.m, h, after, reached, moves, last, self.options.nominal, diagnostics)
 
-    def _size(self, now: RunState, stops: Stops, local: LocalStep) -> Array:
+    def _size(self, now: RunState, local: LocalStep) -> Array:
         """The step size that the tolerance asks for, positive, (...,)."""
         limits = self.limits
         if local.estimate_order is not None and np.isinf(now.h).any():
-            guess: Any = first_size(limits, local, self.psi, now.m, now.t)
-            now.h = np.where(np.isinf(now.h), guess, now.h)
+            now.h = np.where(np.isinf(now.h), first_size(limits, local, self.psi, now.m, now.t), now.h)
         h, good, looks, cuts, _ = tried_size(
             limits, self.action, self.psi, local, self.step.order, now.m, now.t, now.h, self.psi.field
         )
@@ -317,46 +329,39 @@ class Automaton:
             h = np.where(now.active, h, 0)
         return h
 
-    def _fitted(self, now: RunState, stops: Stops, local: LocalStep, size: Array) -> tuple[Array, Array, BooleanArray]:
+    def _fitted(self, now: RunState, local: LocalStep, size: Array) -> tuple[Array, Array, BooleanArray]:
         """Signed step sizes that do not pass the end, the times after them, and which steps are the last."""
         h = self.direction * np.where(now.active, size, 0).astype(self.dtype)
-        left = stops.end - now.t
+        left = self.stops.end - now.t
         if not self.options.nominal and local.clock:
-            h, passed, last, runs = fitted(local, h, left, halve=stops.total is None)
+            h, passed, last, runs = fitted(local, h, left, halve=self.stops.total is None)
             if not runs.all():
                 self._fail_by_psi(now, now.active & ~runs, np.where(local.is_near_cone(h), CONE, CLOCK))
                 h, passed = np.where(now.active, h, 0), np.where(now.active, passed, 0)
             after, last = now.t + passed, last & now.active
-            return h, np.where(last, stops.end, after) if last.any() else after, last
+            return h, np.where(last, self.stops.end, after) if last.any() else after, last
         dt = self.options.dt
-        if dt is None or stops.total is None:
+        if dt is None or self.stops.total is None:
             last = now.active & (self.direction * (left - h) <= SLACK * np.abs(h))
             after = now.t + h
         else:  # by counting, so that round-off does not add up
             count = now.taken + 1
-            last = now.active & (count >= stops.total)
+            last = now.active & (count >= self.stops.total)
             after = self.span[0] + count * (self.direction * dt)
         if last.any():
-            h, after = np.where(last, left, h), np.where(last, stops.end, after)
+            h, after = np.where(last, left, h), np.where(last, self.stops.end, after)
         return h, after, last
 
-    def _judged(self, now: RunState, local: LocalStep, h: Array) -> BooleanArray | bool:
-        """Which lanes accept the step by its estimate, all without one; adapts the next step size."""
-        accepted: Any
-        proposal: Any
-        accepted, proposal = judgement(self.limits, local, now.m, h[..., None], self.axes)
-        now.h = proposal
-        return accepted
-
-    def _looked_into(self, now: RunState, stops: Stops, proposal: StepProposal) -> tuple[StepProposal, BooleanArray]:
+    def _looked_into(self, now: RunState, proposal: StepProposal) -> tuple[StepProposal, BooleanArray]:
         """The step, shortened at a terminal event, and for which lanes it is; the events are recorded."""
         now.statistics.take(proposal.diagnostics, proposal.local, now.t, now.m, proposal.moves)
-        if stops.events is None:
+        events = self.stops.events
+        if events is None:
             return proposal, np.zeros(self.shape, dtype=bool)
-        values = stops.events.values(proposal.after, proposal.reached)
+        values = events.values(proposal.after, proposal.reached)
         ends = (proposal.t, proposal.m), (proposal.after, proposal.reached)
-        look = Look(proposal.position, partial(self._slope, stops.events), proposal.h, *ends, proposal.moves)
-        stop, halted = stops.events.record(now.event_log, look, now.event_values, values, now.taken == 0)
+        look = Look(proposal.position, partial(self._slope, events), proposal.h, *ends, proposal.moves)
+        stop, halted = events.record(now.event_log, look, now.event_values, values, now.taken == 0)
         before = now.event_values
         now.event_values = [np.where(proposal.moves, v, g) for v, g in zip(values, before, strict=True)]
         if not halted.any():
@@ -413,7 +418,7 @@ class Automaton:
         self._fail(now, where & ~finite, PSI)
         self._fail(now, where & finite, code)
 
-    def _diagnose(self, now: RunState, stops: Stops, error: Exception) -> None:
+    def _diagnose(self, now: RunState, error: Exception) -> None:
         """A step could not be computed: end the lanes that are the cause, or halve their step sizes."""
         if self.psi_raised:
             raise error
@@ -432,27 +437,9 @@ class Automaton:
         where = now.active & unsolvable(*self.tried, now.active, error)
         sizes = np.abs(self.tried[1])
         now.h = np.where(where, sizes / 2, now.h)
-        self._fail(now, where & ((stops.total is not None) | (sizes <= 2 * self.tiny)), code)
+        self._fail(now, where & ((self.stops.total is not None) | (sizes <= 2 * self.tiny)), code)
 
-
-# Run: an integration with its state, its progress, its checkpoints and its result. The automaton
-# (`liehom.flow.run.run`) makes the steps. With compiled code, the fast path makes ordinary steps, those without an
-# output time, an end or a failure in them, and the automaton makes the steps between.
-
-
-@final
-class Run(Automaton):
-    """An integration: what is integrated, its `state`, and the loop over steps."""
-
-    def __init__(self, action: Action, psi: Generator, step: Step, span: Span, start: Array, options: Options) -> None:
-        super().__init__(action, psi, step, span, start, options)
-        events = None if options.events is None else Events(options.events, psi.field.args)
-        total = None if options.dt is None else self._number_of_steps(options.dt)
-        self.stops: Stops = Stops(span[1], total, events)
-        self.fast_path: Callable[[Run], bool] | None = None  # makes steps; returns whether there are more to be made
-        self.engines: dict[str, None] = {}  # what has made steps, in order
-        self.state: RunState = self._initial_state(start)
-
+    # -- the state ---------------------------------------------------------------------------------------
     def _initial_state(self, start: Array) -> RunState:
         options, span, events = self.options, self.span, self.stops.events
         t = np.full(self.shape, span[0], dtype=self.dtype)
@@ -462,24 +449,14 @@ class Run(Automaton):
             samples.start(span[0], start)
         calls, self.calls = self.calls, 0
         return RunState(
-            t=t,
-            m=self.start,
-            active=np.full(self.shape, bool(span[0] != span[1])),
-            code=np.zeros(self.shape, dtype=int),
-            ended_at=t,
+            t=t, m=self.start, active=np.full(self.shape, bool(span[0] != span[1])),
+            code=np.zeros(self.shape, dtype=int), ended_at=t,
             h=np.full(self.shape, options.first_step or np.inf, dtype=self.dtype),
-            taken=np.zeros(self.shape, dtype=int),
-            calls=calls,  # of the preparation of the step
-            event_values=events.values(t, self.start) if events else [],
-            path=Path(t, self.start),
+            taken=np.zeros(self.shape, dtype=int), calls=calls,  # of the preparation of the step
+            event_values=events.values(t, self.start) if events else [], path=Path(t, self.start),
             statistics=StepStatistics(self.step, self.shape),
-            event_log=EventLog(events.count if events else 0, self.shape, start.shape[-1]),
-            samples=samples,
-        )
-
-    def _number_of_steps(self, dt: Array) -> Array:
-        """Numbers of steps of size dt to the end; a rest below 1e-9 dt, or below round-off, is not a step."""
-        return np.maximum(np.ceil(abs(self.span[1] - self.span[0]) / dt - (SLACK + self.rest / dt)), 1)
+            event_log=EventLog(events.count if events else 0, self.shape, start.shape[-1]), samples=samples,
+        )  # fmt: skip
 
     # -- the loop ----------------------------------------------------------------------------------------
     def execute(self, show: bool | Callable[[float], object], path: File | None) -> Solution:
@@ -494,7 +471,7 @@ class Run(Automaton):
                 while state.active.any():
                     if self.fast_path is None or not self.fast_path(self):
                         self.engines["numpy"] = None
-                        self.advance(state, self.stops)
+                        self.advance(state)
                     if path is not None:
                         snapshot = state.snapshot()
                     progress.update(self._fraction)
@@ -520,13 +497,11 @@ class Run(Automaton):
         o, events, field = self.options, self.stops.events, self.field
         functions = {"step": self.step, "exponential": self.action.exponential} | events_by_name(o.events)
         numbers = [0 if x is None else x for x in (o.dt, o.t_eval)]
-        others = {
-            "options": digest(f"{stable_repr(self.step)} {self.action.exponential.name} {o.fixed_text()}", *numbers),
-            "events": ""
-            if events is None
-            else digest(f"{events.directions} {events.terminal}", *self.state.event_values),
-        }
-        look = None if events is None else partial(events.values, self.state.t, self.start)
+        text = f"{stable_repr(self.step)} {self.action.exponential.name} {o.fixed_text()}"
+        others, look = {"options": digest(text, *numbers), "events": ""}, None
+        if events is not None:
+            others["events"] = digest(f"{events.directions} {events.terminal}", *self.state.event_values)
+            look = partial(events.values, self.state.t, self.start)
         return fingerprint(self.action, field, self.start, self.span, functions, others, look)
 
     def _fraction(self) -> float:
@@ -554,16 +529,8 @@ class Run(Automaton):
             check=o.check(self.field.time_dependent), engine=", ".join(self.engines),
         )  # fmt: skip
         solution = Solution(
-            t=t,
-            y=y,
-            sol=dense() if o.dense_output else None,
-            t_events=t_events,
-            y_events=y_events,
-            nfev=now.calls,
-            status=ended.status,
-            message=ended.message,
-            n_steps=now.taken if self.shape else int(now.taken),
-            report=report,
-            statuses=ended.statuses if self.shape else ended.status,
-        )
+            t=t, y=y, sol=dense() if o.dense_output else None, t_events=t_events, y_events=y_events, nfev=now.calls,
+            status=ended.status, message=ended.message, n_steps=now.taken if self.shape else int(now.taken),
+            report=report, statuses=ended.statuses if self.shape else ended.status,
+        )  # fmt: skip
         return with_steps(solution, dense) if self.keeps else solution

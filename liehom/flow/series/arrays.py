@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 
 from liehom.base.errors import FieldError, SeriesError, SingularError
 from liehom.base.objects import refuse_masked
-from liehom.base.typing import Array, Number, ObjectArray, Values
+from liehom.base.typing import Array, Lanes, Number, ObjectArray, Values
 from liehom.flow.tracing.array import Traced, elementwise
 from liehom.flow.tracing.graph import COARSE
 from liehom.flow.tracing.lattice import LatticeTraced
@@ -30,7 +30,6 @@ NumbersLike: TypeAlias = ArrayLike | Number | Sequence[Number]
 """Whatever becomes an array of numbers: arrays, numbers and nested sequences, also of exact numbers."""
 
 T = TypeVar("T")
-V = TypeVar("V", bound=Values)
 
 # the values at 0 that stay in every field; at other arguments these functions leave QQ
 _AT_ZERO = {
@@ -159,7 +158,7 @@ def zeros(like: Values, shape: tuple[int, ...]) -> npt.NDArray[Any]:
     return out
 
 
-def in_lanes(x: V) -> V:
+def in_lanes(x: Lanes) -> Lanes:
     """x (..., N) with each component contiguous in memory, the last axis outermost; a copy if x has another layout.
 
     Values and shape are those of x. Arithmetic of numpy keeps the layout, and with few components is several times
@@ -167,10 +166,8 @@ def in_lanes(x: V) -> V:
     """
     if type(x) is not np.ndarray or x.ndim < 2:
         return x
-    values: Any = x
-    components: Any = x.T if x.ndim == 2 else np.moveaxis(values, -1, 0)
-    moved: Any = x if components.flags.c_contiguous else np.moveaxis(np.ascontiguousarray(components), 0, -1)
-    return moved
+    components = x.T if x.ndim == 2 else np.moveaxis(x, -1, 0)
+    return x if components.flags.c_contiguous else np.moveaxis(np.ascontiguousarray(components), 0, -1)
 
 
 def across_lanes(x: Values, matrix: Values) -> Values:

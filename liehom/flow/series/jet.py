@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
-from typing import TYPE_CHECKING, Any, NamedTuple, Never, TypeAlias, TypeVar, final
+from typing import TYPE_CHECKING, Any, Never, TypeAlias, TypeVar, final
 
 import numpy as np
 import numpy.typing as npt
@@ -25,51 +25,16 @@ from liehom.flow.series.arrays import (
 )
 from liehom.flow.series.node import Coefficient, Node, rewind
 
-# Table of the functions that `Jet` calls for numpy's protocols and the methods of arrays; their modules (`assembly`,
-# `jet_ufuncs`, `jet_functions`), which import `jet`, enter them here.
-
-Operand: TypeAlias = Any
-"""A Jet, an array, a number, or a nested list or array of objects that holds Jets."""
-
-
+Operand: TypeAlias = Any  # a Jet, an array, a number, or a nested list or array of objects that holds Jets
 WITHOUT_SERIES = "or take step='rk45', a Runge-Kutta step, which calls the generator on points only, as it is"
 """Remedy of messages about generators that cannot be expanded."""
-
-
-@final
-class Dispatch:
-    """Functions that implement methods of `Jet`."""
-
-    __slots__ = ("apply_function", "apply_ufunc", "method", "nodes")
-
-    nodes: Callable[..., list[Node]]
-    apply_ufunc: Callable[[Any, str, tuple[Any, ...], dict[str, Any]], Any]  # for ``__array_ufunc__``
-    apply_function: Callable[[Any, tuple[Any, ...], dict[str, Any]], Any]  # for ``__array_function__``
-    method: Callable[[Any, str], Any]  # methods of arrays that the class does not define
-
-
-dispatch: Dispatch = Dispatch()
+HOOKS: dict[str, Callable[..., Any]] = {}
+"""The functions for ``__array_ufunc__``, ``__array_function__`` and methods of arrays, which `jet_functions` enters."""
 
 
 # Assignment into Jets: entries are replaced by new series, so results computed before do not change. Slices and
 # transposes are views, as for numpy arrays: they show what is assigned later, and assignment into a slice assigns to
 # the Jet.
-
-
-class ViewOperation(NamedTuple):
-    """One step from an array to a view of it: a linear function, and its index if it is indexing."""
-
-    function: Callable[[Any], Values]
-    key: Key
-    writable: bool
-
-
-class View(NamedTuple):
-    """The origin of a view: the Jet that owns the entries, the operations from it, its node when last seen."""
-
-    owner: Any
-    operations: tuple[ViewOperation, ...]
-    seen: Node
 
 
 def frozen(x: Any) -> Any:
@@ -83,17 +48,12 @@ def frozen(x: Any) -> Any:
 
 def checked_index(key: Key, x: Values) -> Key:
     """Copy of an index of the array x, with lists as arrays, checked against the shape (JAX would clip it)."""
-    key = tuple(map(_copied_index, key)) if isinstance(key, tuple) else _copied_index(key)
     parts = key if isinstance(key, tuple) else (key,)
+    parts = tuple(np.array(x, dtype=None if x else int) if isinstance(x, list) else frozen(x) for x in parts)
+    key = parts if isinstance(key, tuple) else parts[0]
     if is_jax(x) and not any(is_jax(part) for part in parts):
         np.broadcast_to(np.zeros(()), x.shape)[key]
     return key
-
-
-def _copied_index(part: Key) -> Key:
-    if isinstance(part, list):
-        return np.array(part, dtype=None if part else int)
-    return part.copy() if isinstance(part, np.ndarray) else part
 
 
 def kind_of_index(key: Key, ndim: int) -> str:
@@ -104,25 +64,6 @@ def kind_of_index(key: Key, ndim: int) -> str:
     if integers + slices < len(parts):
         return "copy"
     return "number" if not slices and integers == ndim else "view"
-
-
-def followed(view: View) -> list[Node]:
-    """Current nodes of the owner, of the views in between, and of the view itself."""
-    nodes = [view.owner.node]
-    for operation in view.operations:
-        nodes.append(recurrences.linear(operation.function, [nodes[-1]]))
-    return nodes
-
-
-def written(view: View, key: Key, value: Node) -> Node:
-    """Node of the owner after assignment of `value` to the view at `key`."""
-    nodes = followed(view)
-    new = replaced(nodes[-1], key, value)
-    for operation, below in zip(reversed(view.operations), reversed(nodes[:-1]), strict=True):
-        if not operation.writable:
-            raise SeriesError("this series is a transposed or reshaped view of another one: write into that one")
-        new = replaced(below, operation.key, new)
-    return new
 
 
 def replaced(node: Node, key: Key, part: Node) -> Node:
@@ -184,7 +125,10 @@ class Jet(NDArrayOperatorsMixin):
     array([1., 0.])
     """
 
-    __slots__ = ("_node", "_view", "_writable")
+    __slots__ = ("_function", "_key", "_node", "_parent", "_seen", "_writable")
+    _function: Callable[[Any], Any]
+    _key: Key
+    _seen: Node
 
     def __init__(self, coefficients: NumbersLike) -> None:
         values = owned(as_values(coefficients))
@@ -194,7 +138,7 @@ class Jet(NDArrayOperatorsMixin):
             raise ShapeError("a Jet has at least its coefficient 0, got an empty first axis")
         known = [values[k] for k in range(values.shape[0])]
         self._node = Node(len(known) - 1, known[0], known)
-        self._view: View | None = None
+        self._parent: Jet | None = None  # the Jet of which this one is a view, by a function, when its node was seen
         self._writable = False
 
     # -- constructors ------------------------------------------------------------------------------------
@@ -210,7 +154,7 @@ class Jet(NDArrayOperatorsMixin):
         array([1., 1., 2.])
         """
         jet = cls.__new__(cls)
-        jet._node, jet._view, jet._writable = node, None, writable
+        jet._node, jet._parent, jet._writable = node, None, writable
         return jet
 
     @classmethod
@@ -308,9 +252,9 @@ class Jet(NDArrayOperatorsMixin):
     @property
     def node(self) -> Node:
         """The node that computes the coefficients."""
-        if self._view is not None and self._view.owner.node is not self._view.seen:
-            self._node = followed(self._view)[-1]
-            self._view = self._view._replace(seen=self._view.owner.node)
+        if self._parent is not None and self._parent.node is not self._seen:
+            self._seen = self._parent.node
+            self._node = recurrences.linear(self._function, [self._seen])
         return self._node
 
     @property
@@ -395,12 +339,12 @@ class Jet(NDArrayOperatorsMixin):
         all: Callable[..., Jet]
 
     def __array_ufunc__(self, ufunc: np.ufunc, method: str, *inputs: object, **options: object) -> Any:
-        return dispatch.apply_ufunc(ufunc, method, inputs, options)
+        return HOOKS["ufunc"](ufunc, method, inputs, options)
 
     def __array_function__(
         self, function: Callable[..., Any], types: Iterable[type], args: tuple[Any, ...], options: dict[str, Any]
     ) -> Any:
-        return dispatch.apply_function(function, args, options)
+        return HOOKS["function"](function, args, options)
 
     # -- what branches on values -------------------------------------------------------------------------
     def __bool__(self) -> bool:
@@ -411,16 +355,7 @@ class Jet(NDArrayOperatorsMixin):
             "float() of a series (or its assignment to an entry of a float array: use np.stack, np.zeros_like)"
         )
 
-    if TYPE_CHECKING:
-        # raises like __float__
-        def __int__(self) -> int: ...
-        def __index__(self) -> int: ...
-        def __complex__(self) -> complex: ...
-        def __trunc__(self) -> int: ...
-        def __floor__(self) -> int: ...
-        def __ceil__(self) -> int: ...
-    else:
-        __int__ = __index__ = __complex__ = __trunc__ = __floor__ = __ceil__ = __float__
+    __int__ = __index__ = __complex__ = __trunc__ = __floor__ = __ceil__ = __float__
     __hash__ = object.__hash__
 
     def _sympy_(self) -> Never:
@@ -450,7 +385,7 @@ class Jet(NDArrayOperatorsMixin):
         key = checked_index(key, self.node.value)
         kind = kind_of_index(key, self.ndim)
         if kind == "view":
-            return self.part(lambda x: x[key], key=key, writable=True)
+            return self.part(lambda x: x[key], key=key if isinstance(key, tuple) else (key,))
         return Jet.from_node(recurrences.linear(lambda x: x[key], [self.node]), writable=kind == "copy")
 
     def __setitem__(self, key: Key, value: Operand) -> None:
@@ -459,27 +394,22 @@ class Jet(NDArrayOperatorsMixin):
             raise SeriesError(
                 "this series is given, or a part of one: write into a copy (m.copy(), np.zeros_like(m)) or use np.stack"
             )
-        node, part = dispatch.nodes(self, value)
-        if self._view is None:
-            self._node = replaced(node, key, part)
-        else:
-            self._view.owner._node = written(self._view, key, part)
+        node, part = nodes(self, value)
+        jet, new = self, replaced(node, key, part)
+        while (parent := jet._parent) is not None:
+            if jet._key is None:
+                raise SeriesError("this series is a transposed or reshaped view of another one: write into that one")
+            jet, new = parent, replaced(parent.node, jet._key, new)
+        jet._node = new
 
     def shares(self) -> bool:
         """Whether entries of this Jet, or of the Jet that it is a view of, may be assigned."""
-        return self._writable or self._view is not None
+        return self._writable or self._parent is not None
 
-    def part(self, function: Callable[[Any], Any], *, key: Key = None, writable: bool = False) -> Jet:
+    def part(self, function: Callable[[Any], Any], *, key: Key = None) -> Jet:
         """Jet of a linear function of the values, such as a slice or a transpose, that shares entries with this Jet.
 
-        Parameters
-        ----------
-        function : callable
-            From arrays to arrays.
-        key : index, optional
-            If function(x) is x[key].
-        writable : bool
-            Whether assignment into the result assigns to entries of this Jet; needs `key`.
+        If the function is x -> x[key], with a tuple as `key`, assignment into the result assigns to this Jet.
 
         Examples
         --------
@@ -490,11 +420,8 @@ class Jet(NDArrayOperatorsMixin):
         array([2., 5.])
         """
         jet = Jet.from_node(recurrences.linear(function, [self.node]))
-        operation = ViewOperation(function, key, writable)
-        if self._writable:
-            jet._view = View(self, (operation,), self._node)
-        elif self._view is not None:
-            jet._view = self._view._replace(operations=(*self._view.operations, operation))
+        if self.shares():
+            jet._parent, jet._seen, jet._function, jet._key = self, self._node, function, key
         return jet
 
     # -- methods that arrays have ------------------------------------------------------------------------
@@ -512,7 +439,7 @@ class Jet(NDArrayOperatorsMixin):
 
     def __getattr__(self, name: str) -> Any:
         # other methods of arrays; numpy calls x.sin() for the entries of arrays of objects
-        return dispatch.method(self, name)
+        return HOOKS["method"](self, name)
 
     def __repr__(self) -> str:
         return f"<series of order {self.order} with values of shape {self.shape}>"
@@ -652,6 +579,3 @@ def on_series(function: Callable[..., T], *arguments: object) -> T:
         if reason is None or reason is error:
             raise
         raise SeriesError(str(reason)) from error
-
-
-dispatch.nodes = nodes

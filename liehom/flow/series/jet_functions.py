@@ -20,7 +20,7 @@ from liehom.base.errors import SeriesError
 from liehom.base.typing import Values
 from liehom.flow.series import node as recurrences
 from liehom.flow.series.arrays import across_lanes, constant_like, elementary, is_jax, is_lazy, namespace, solve, zeros
-from liehom.flow.series.jet import WITHOUT_SERIES, Jet, Operand, as_jet, dispatch, frozen, holds_jets, nodes
+from liehom.flow.series.jet import HOOKS, WITHOUT_SERIES, Jet, Operand, as_jet, frozen, holds_jets, nodes
 from liehom.flow.series.node import FUNCTIONS, Node
 from liehom.flow.tracing.sweeps import CHAINED, SLOPES
 
@@ -195,9 +195,6 @@ OPERATORS: dict[str, Callable[..., Node]] = {
     "float_power": _power, "arctan2": _arctan2, "hypot": _hypot, "logaddexp": _logaddexp,
 }  # fmt: skip
 
-dispatch.apply_ufunc = apply_ufunc
-
-
 # Numpy's functions of arrays, and the methods of arrays, for Jets: linear in the first argument, bilinear, linear in a
 # list of arrays, with a list of parts as result, or special. Functions that are in no table, and options that would add
 # something, such as ``initial=``, raise `SeriesError`.
@@ -224,16 +221,6 @@ OPTIONS = {
 BILINEAR = ["dot", "tensordot", "cross", "inner", "outer", "vdot", "kron", "convolve", "correlate", "vecdot", "matmul"]
 JOINED = ["stack", "concatenate", "concat", "hstack", "vstack", "dstack", "column_stack"]
 PARTED = ["split", "array_split", "hsplit", "vsplit", "dsplit", "unstack"]
-# methods of arrays that are numpy functions of the same name
-METHODS = [
-    "conj", "conjugate", "cumsum", "diagonal", "dot", "mean", "prod", "ravel", "repeat", "reshape", "squeeze", "sum",
-    "swapaxes", "take", "trace", "transpose",
-]  # fmt: skip
-REFUSED_METHODS = [
-    "all", "any", "argmax", "argmin", "argpartition", "argsort", "choose", "clip", "compress", "cumprod", "item", "max",
-    "min", "nonzero", "partition", "ptp", "put", "resize", "round", "searchsorted", "sort", "std", "var", "fill",
-    "tobytes", "tofile", "view", "byteswap",
-]  # fmt: skip
 
 
 def apply_function(
@@ -262,24 +249,20 @@ def method(jet: Jet, name: str) -> Callable[..., Any]:
     """The method of arrays with this name, for a Jet."""
     if name in FUNCTIONS or name in ("arctan2", "hypot", "logaddexp"):
         return partial(getattr(np, name), jet)
-    if name in METHODS:
-        return partial(_method, jet, name)
     if name in EXTRA_METHODS:
         return partial(EXTRA_METHODS[name], jet)
-    if name in REFUSED_METHODS:
-        return partial(_refuse, name)
+    if callable(getattr(np.ndarray, name, None)) and not name.startswith("_"):
+        return partial(_method if hasattr(np, name) else _refuse, jet, name)
     raise AttributeError(f"a series has no attribute {name!r}")
 
 
 def _method(jet: Jet, name: str, *args: object, **options: object) -> Any:
     if name in ("reshape", "transpose") and len(args) > 1:
         args = (args,)
-    elif name == "transpose" and args == (None,):
-        args = ()
     return getattr(np, name)(jet, *args, **options)
 
 
-def _refuse(name: str, *args: object, **options: object) -> Never:
+def _refuse(jet: Jet, name: str, *args: object, **options: object) -> Never:
     raise refused(f"the method {name}")
 
 
@@ -536,8 +519,7 @@ SPECIAL: dict[str, Callable[..., Any]] = {
     "result_type": lambda *args: np.result_type(*[a.dtype if isinstance(a, Jet) else a for a in args]),
 }  # fmt: skip
 
-dispatch.apply_function = apply_function
-dispatch.method = method
+HOOKS.update(ufunc=apply_ufunc, function=apply_function, method=method)
 
 
 # Series of functions that are written for JAX arrays, which do not run on Jets, by the Taylor mode of JAX.

@@ -16,7 +16,7 @@ from liehom.base.typing import Values
 from liehom.flow.series import node as recurrences
 from liehom.flow.series.arrays import NumbersLike, as_values, constant_like, is_jax, is_traced, namespace, owned, zeros
 from liehom.flow.series.jet import Jet
-from liehom.flow.series.node import Coefficient, Node
+from liehom.flow.series.node import Coefficient, Node, plus
 
 # Bilinear: a bilinear map with constant sparse coefficients, such as the bracket or the action rho(x) m, on numpy
 # arrays, JAX arrays, exact scalars and Jets: B(x, y)_k = sum over entries (i, j, k, v) of v x_i y_j.
@@ -103,12 +103,9 @@ class Bilinear:
 
     def _contracted(self, subscripts: str, x: NumbersLike) -> npt.NDArray[Any]:
         factor = x if isinstance(x, Jet) else _values_of(x)
-        xp = np if isinstance(factor, Jet) else namespace(factor)
-        return xp.einsum(subscripts, factor, self._tensor_for(factor))
-
-    def _tensor_for(self, x: Jet | npt.NDArray[Any]) -> npt.NDArray[Any]:
-        value = x.value if isinstance(x, Jet) else x
-        return self._cached("tensor", value, lambda: self._filled(self._coefficients(value)))
+        xp, value = (np, factor.value) if isinstance(factor, Jet) else (namespace(factor), factor)
+        tensor = self._cached("tensor", value, lambda: self._filled(self._coefficients(value)))
+        return xp.einsum(subscripts, factor, tensor)
 
     def _filled(self, values: npt.NDArray[Any]) -> npt.NDArray[Any]:
         out = np.zeros(self.shape, dtype=values.dtype)
@@ -281,8 +278,7 @@ def _weighted(nodes: Sequence[Node], weights: Sequence[Fraction], first: Values 
         total = None
         for node, weight in used:
             if node.known[k] is not None:
-                term = _scaled(node.known[k], weight)
-                total = term if total is None else total + term
+                total = plus(total, _scaled(node.known[k], weight))
         return total
 
     value = first
@@ -341,8 +337,7 @@ def cayley_series(x: Jet) -> Jet:
         total = None
         for i in range(1, k):
             if node.known[i] is not None and result.known[k - i] is not None:
-                term = node.known[i] @ result.known[k - i]
-                total = term if total is None else total + term
+                total = plus(total, node.known[i] @ result.known[k - i])
         if total is None:
             return node.known[k]
         return total / 2 if node.known[k] is None else node.known[k] + total / 2
@@ -354,11 +349,8 @@ def cayley_series(x: Jet) -> Jet:
 def cayley_magnus(a: Jet) -> Jet:
     """x(t) with x(0) = 0 such that cay(x(t)) solves Y' = a Y, Y(0) = 1: x' = (1 - x/2) a (1 + x/2).
 
-    Parameters
-    ----------
-    a : Jet of matrices (..., n, n)
-        In an algebra that is closed under y -> x y x, such as the algebra of a quadratic group. It may be growing:
-        coefficient k + 1 of the result, which is of one order more, needs a up to coefficient k.
+    The matrices a(t) (..., n, n) are in an algebra that is closed under y -> x y x, such as that of a quadratic group.
+    The series a may be growing, as for `magnus`.
 
     Examples
     --------
@@ -405,19 +397,10 @@ def _matrix_series(node: Node, weights: list[Fraction], one: bool) -> Jet:
 
 
 def magnus(bracket: Bracket, a: Jet) -> Jet:
-    """x(t) with x(0) = 0 such that exp(x(t)) solves Y' = a Y, Y(0) = 1: x' = dexp_x^-1 a.
+    """x(t) with x(0) = 0 such that exp(x(t)) solves Y' = a Y, Y(0) = 1: x' = dexp_x^-1 a, with a bracket as for `dexp`.
 
-    Parameters
-    ----------
-    bracket : callable
-        See `dexp`.
-    a : Jet
-        Values in the algebra. It may be growing: coefficient k + 1 of the result, which is of one order more, needs a
-        up to coefficient k.
-
-    Notes
-    -----
-    In Taylor coefficients x_1 = a_0, x_2 = a_1 / 2, x_3 = a_2 / 3 + [a_1, a_0] / 12.
+    The series a may be growing: coefficient k + 1 of the result needs a up to coefficient k. The order of the result is
+    that of a, plus 1. In Taylor coefficients x_1 = a_0, x_2 = a_1 / 2, x_3 = a_2 / 3 + [a_1, a_0] / 12.
 
     Examples
     --------
@@ -442,12 +425,10 @@ def _over(k: int, x: Coefficient) -> Coefficient:
 
 
 def bch(bracket: Bracket, x: NumbersLike, y: NumbersLike, order: int | None = None) -> Jet:
-    """z = log(exp x exp y) as a series.
+    """z = log(exp x exp y) as a series, with a bracket as for `dexp`.
 
     Parameters
     ----------
-    bracket : callable
-        See `dexp`.
     x, y : array_like or Jet
         Elements of the algebra, which stand for t x and t y, so that coefficient k is the term of degree k of
         the Baker-Campbell-Hausdorff series; or Jets x(t), y(t) with x(0) = y(0) = 0.
@@ -490,25 +471,21 @@ def _velocity(bracket: Bracket, x: NumbersLike, order: int, sign: int) -> Node:
         value = as_values(x)
         return Node(order, zeros(value, value.shape), [None, value, *[None] * (order - 1)])
     node = without_constant(x, check=True).node
-    moving = Node(node.order, node.value, [None], ((node, 0),), lambda k: _times(k, node.known[k]))
+
+    def rule(k: int) -> Coefficient:
+        return None if node.known[k] is None else k * node.known[k]
+
+    moving = Node(node.order, node.value, [None], ((node, 0),), rule)
     weights = [Fraction(sign**k, factorial(k + 1)) for k in range(order)]
     velocity: Any = _series_in_ad(bracket, Jet.from_node(node), Jet.from_node(moving), weights)
     return velocity.node
-
-
-def _times(k: int, x: Values) -> Coefficient:
-    return None if x is None else k * x
 
 
 # -- what the series need of their arguments -----------------------------------------------------------------
 def without_constant(x: Jet, *, check: bool = False) -> Jet:
     """x(t) - x(0), as a series whose coefficient 0 is structurally zero.
 
-    Parameters
-    ----------
-    x : Jet
-    check : bool
-        Raise `SeriesError` if x(0) is not zero; traced values must then be structurally zero.
+    With `check` it raises `SeriesError` if x(0) is not zero; traced values must then be structurally zero.
 
     Examples
     --------

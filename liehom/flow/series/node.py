@@ -125,6 +125,11 @@ def rewind(root: Node, source: Node, k: int) -> None:
                 pending.append(node)
 
 
+def plus(total: Coefficient, term: Values) -> Values:
+    """total + term."""
+    return term if total is None else total + term
+
+
 # Recurrences for Taylor coefficients: linear and multilinear maps, quotients, powers, elementary functions.
 #
 # A multilinear map B has B(a, b)_k = sum_i B(a_i, b_(k-i)).  An elementary function F
@@ -182,8 +187,7 @@ def multilinear(function: Callable[..., Values], operands: Sequence[Node]) -> No
     def rule(k: int) -> Coefficient:
         total = None
         for parts in _parts(known, starts, k):
-            term = function(*parts)
-            total = term if total is None else total + term
+            total = plus(total, function(*parts))
         return total
 
     value = function(*[o.value for o in operands])
@@ -263,8 +267,7 @@ def _chain_rule(u: Node, slope: Node, sign: int = 1) -> Callable[[int], Coeffici
         for i in range(1, k + 1):
             if u.known[i] is not None and slope.known[k - i] is not None:
                 term = u.known[i] * slope.known[k - i]
-                term = term if i == 1 else i * term
-                total = term if total is None else total + term
+                total = plus(total, term if i == 1 else i * term)
         return None if total is None else total / (sign * k)
 
     return rule
@@ -292,13 +295,7 @@ def integer_power(u: Node, n: int) -> Node:
 def real_power(u: Node, exponent: Fraction | Number | float, value: Values | None = None) -> Node:
     """Node of y = u ** (p / q) for u_0 != 0, by q k u_0 y_k = sum_i (p i - q (k - i)) u_i y_(k-i).
 
-    Parameters
-    ----------
-    u : Node
-    exponent : Fraction or number
-        One number; a Fraction if the values are exact.
-    value : array, optional
-        u_0 ** exponent, if it has been computed more precisely.
+    The exponent p / q is one number, a Fraction if the values are exact; `value` is u_0 ** (p / q), if it is known.
     """
     p: Any
     p, q = exponent, 1
@@ -319,8 +316,7 @@ def real_power(u: Node, exponent: Fraction | Number | float, value: Values | Non
         total = None
         for i in range(1, k + 1):
             if u.known[i] is not None and node.known[k - i] is not None:
-                term = (p * i - q * (k - i)) * u.known[i] * node.known[k - i]
-                total = term if total is None else total + term
+                total = plus(total, (p * i - q * (k - i)) * u.known[i] * node.known[k - i])
         return None if total is None else total / (q * k * u.value)
 
     node.depends((u, 0), (node, 1), rule=rule)

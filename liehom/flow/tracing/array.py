@@ -30,13 +30,8 @@ STRUCTURAL = frozenset(["stack", "concatenate", "reshape", "swapaxes", "transpos
     "column_stack", "split", "array_split", "atleast_1d", "atleast_2d", "copy", "fliplr", "flipud", "rot90", "triu",
     "tril", "append", "diag", "delete", "insert", "rollaxis", "matrix_transpose", "vecdot", "block", "average",
     "concat", "permute_dims", "unstack", "einsum"])  # fmt: skip
-# methods of arrays that are numpy functions of the same name
-METHODS = frozenset(["astype", "copy", "item", "reshape", "transpose", "sum", "max", "min", "all", "any", "mean", "dot",
-    "swapaxes", "ravel", "squeeze", "clip", "prod", "trace", "diagonal", "take", "repeat", "cumsum", "conj",
-    "conjugate"])  # fmt: skip
 
-ExprArray: TypeAlias = npt.NDArray[Any]
-"""An array of objects that are `Expr` of one tape."""
+ExprArray: TypeAlias = npt.NDArray[Any]  # an array of objects that are `Expr` of one tape
 
 
 def _sign(tape: Tape, x: Expr) -> Expr:
@@ -59,24 +54,16 @@ LOGICAL: dict[str, Callable[..., Expr]] = {
     "logical_xor": _exclusive, "bitwise_xor": _exclusive, "logical_not": Tape.negated, "invert": Tape.negated,
 }  # fmt: skip
 ELEMENTS: dict[str, Callable[..., Expr]] = {
-    "absolute": lambda tape, x: tape.call("abs", x),
-    "fabs": lambda tape, x: tape.call("abs", x),
-    "maximum": Tape.largest,
-    "minimum": partial(Tape.largest, least=True),
-    "fmax": _known_extremum,
-    "fmin": partial(_known_extremum, least=True),
-    "greater": lambda tape, a, b: tape.compare("lt", b, a),
-    "greater_equal": lambda tape, a, b: tape.compare("le", b, a),
+    **dict.fromkeys(["absolute", "fabs"], lambda tape, x: tape.call("abs", x)),
+    "maximum": Tape.largest, "minimum": partial(Tape.largest, least=True), "fmax": _known_extremum,
+    "fmin": partial(_known_extremum, least=True), "greater": lambda tape, a, b: tape.compare("lt", b, a),
+    "greater_equal": lambda tape, a, b: tape.compare("le", b, a), "isnan": lambda tape, a: tape.compare("ne", a, a),
     "isfinite": lambda tape, a: tape.compare("lt", tape.call("abs", a), tape.constant(np.inf)),
     "isinf": lambda tape, a: tape.compare("eq", tape.call("abs", a), tape.constant(np.inf)),
-    "isnan": lambda tape, a: tape.compare("ne", a, a),
-    "power": Tape.power,
-    "float_power": Tape.power,
-    "hypot": lambda tape, a, b: tape.call("sqrt", a * a + b * b),
-    "sign": _sign,
-    **dict.fromkeys(["deg2rad", "radians"], lambda tape, a: a * (np.pi / 180)),
+    "power": Tape.power, "float_power": Tape.power, "hypot": lambda tape, a, b: tape.call("sqrt", a * a + b * b),
+    "sign": _sign, **dict.fromkeys(["deg2rad", "radians"], lambda tape, a: a * (np.pi / 180)),
     **dict.fromkeys(["rad2deg", "degrees"], lambda tape, a: a * (180 / np.pi)),
-}
+}  # fmt: skip
 
 
 def solve_linear(tape: Tape, a: ExprArray, b: ExprArray) -> ExprArray:
@@ -211,18 +198,13 @@ class Traced(NDArrayOperatorsMixin):
             raise TypeError("only an array of one entry can be a float")
         return float(self.entries.flat[0])
 
-    if TYPE_CHECKING:
-        # raises like __float__
-        def __int__(self) -> int: ...
-        def __index__(self) -> int: ...
-    else:
-        __int__ = __index__ = __float__
+    __int__ = __index__ = __float__  # they raise alike
     __hash__ = object.__hash__
 
     def __getattr__(self, name: str) -> Callable[..., Any]:
         if name.startswith("__"):
             raise AttributeError(name)
-        if name in METHODS:
+        if callable(getattr(np.ndarray, name, None)) and (hasattr(np, name) or name in ("astype", "item")):
             return lambda *args, **options: _method(self, name, *args, **options)
         if name in FOLDED:  # numpy's functions call these on arrays of objects, such as np.array([m[0], m[1]])
             return lambda: getattr(np, name)(self)
@@ -275,8 +257,6 @@ def _is_foreign(x: object) -> bool:
 def _method(x: Traced, name: str, *args: Operand, **options: Operand) -> Operand:
     if name == "astype":
         return _converted(x, *args, **options)
-    if name == "copy":
-        return Traced(x.tape, x.entries.copy())
     if name in ("reshape", "transpose") and len(args) > 1:
         args = (args,)
     if name == "item":

@@ -9,21 +9,15 @@ import operator
 from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass
 from types import ModuleType
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias, final
+from typing import Any, Literal, TypeAlias, final
 
 import numpy as np
 import numpy.typing as npt
 
 from liehom.base.errors import TraceError
-from liehom.base.typing import Array, IntegerArray
+from liehom.base.typing import Array, IntegerArray, Lanes
 
 # Expr, a tracer: a symbolic number or boolean on a tape, which records the operations on it; constants of a run.
-
-NumberLike: TypeAlias = object
-"""A tracer, or a number that `Tape.of` makes a constant."""
-
-Number: TypeAlias = Any
-"""A number or an array of numbers, of numpy or of JAX."""
 
 Payload: TypeAlias = Any
 """Data of an operation: a constant's value, an index, the name of a variable, a `Loop`, positions in a matrix."""
@@ -48,13 +42,13 @@ BEND = 0.3435  # 1 + x (1 - BEND (1 - x)) is 2^x up to 0.4 % in [0, 1]
 LARGEST_EXPONENT = 1000.0
 
 
-def coarse_log2(x: Number, xp: ModuleType = np) -> Number:
+def coarse_log2(x: Lanes, xp: ModuleType = np) -> Lanes:
     """The logarithm of x > 0 to base 2, up to 0.0431; -1023 for 0."""
     mantissa, exponent = xp.frexp(x)
     return xp.where(x == 0, MIDDLE - 1023.0, exponent + (2.0 * mantissa - 2.0) + MIDDLE)
 
 
-def coarse_exp2(x: Number, xp: ModuleType = np) -> Number:
+def coarse_exp2(x: Lanes, xp: ModuleType = np) -> Lanes:
     """2^x up to 0.4 %, for x between -1000 and 1000, the nearest of which is taken for others."""
     x = xp.clip(x, -LARGEST_EXPONENT, LARGEST_EXPONENT)
     whole = xp.floor(x)
@@ -76,7 +70,7 @@ def _coarse_exp2(x: float) -> float:
     return math.ldexp(1.0 + rest * ((1.0 - BEND) + BEND * rest), whole)
 
 
-COARSE: dict[str, Callable[..., Number]] = {"coarse_log2": coarse_log2, "coarse_exp2": coarse_exp2}
+COARSE: dict[str, Callable[..., Lanes]] = {"coarse_log2": coarse_log2, "coarse_exp2": coarse_exp2}
 FOLDED |= {"coarse_log2": _coarse_log2, "coarse_exp2": _coarse_exp2}
 BOOLEAN = frozenset(["lt", "le", "eq", "ne", "and", "or", "not", "flag"])
 
@@ -117,25 +111,25 @@ class Expr:
         """Whether the value is known while the step is traced."""
         return self.op == "const"
 
-    def __add__(self, other: NumberLike) -> Expr:
+    def __add__(self, other: object) -> Expr:
         return self.tape.add(*self._with(other))
 
-    def __sub__(self, other: NumberLike) -> Expr:
+    def __sub__(self, other: object) -> Expr:
         return self.tape.sub(*self._with(other))
 
-    def __mul__(self, other: NumberLike) -> Expr:
+    def __mul__(self, other: object) -> Expr:
         return self.tape.mul(*self._with(other))
 
-    def __truediv__(self, other: NumberLike) -> Expr:
+    def __truediv__(self, other: object) -> Expr:
         return self.tape.div(*self._with(other))
 
-    __radd__: Callable[[Expr, NumberLike], Expr] = __add__
-    __rmul__: Callable[[Expr, NumberLike], Expr] = __mul__
+    __radd__: Callable[[Expr, object], Expr] = __add__
+    __rmul__: Callable[[Expr, object], Expr] = __mul__
 
-    def __rsub__(self, other: NumberLike) -> Expr:
+    def __rsub__(self, other: object) -> Expr:
         return self.tape.sub(*self._with(other)[::-1])
 
-    def __rtruediv__(self, other: NumberLike) -> Expr:
+    def __rtruediv__(self, other: object) -> Expr:
         return self.tape.div(*self._with(other)[::-1])
 
     def __neg__(self) -> Expr:
@@ -144,10 +138,10 @@ class Expr:
     def __pos__(self) -> Expr:
         return self
 
-    def __pow__(self, other: NumberLike) -> Expr:
+    def __pow__(self, other: object) -> Expr:
         return self.tape.power(*self._with(other))
 
-    def __rpow__(self, other: NumberLike) -> Expr:
+    def __rpow__(self, other: object) -> Expr:
         return self.tape.power(*self._with(other)[::-1])
 
     def __getattr__(self, name: str) -> Callable[..., Expr]:
@@ -159,7 +153,7 @@ class Expr:
     def __abs__(self) -> Expr:
         return self.tape.call("abs", self)
 
-    def _with(self, other: NumberLike) -> tuple[Expr, Expr]:
+    def _with(self, other: object) -> tuple[Expr, Expr]:
         """This tracer and `other` as a pair of numbers; booleans become 0 or 1."""
         other = self.tape.of(other)
         return self.tape.number(self) if self.boolean else self, self.tape.number(other) if other.boolean else other
@@ -184,13 +178,7 @@ class Expr:
             "entry of a float array): use numpy's functions and np.stack, or take engine='numpy'"
         )
 
-    if TYPE_CHECKING:
-        # raises like __float__
-        def __int__(self) -> int: ...
-        def __index__(self) -> int: ...
-        def __complex__(self) -> complex: ...
-    else:
-        __int__ = __index__ = __complex__ = __float__
+    __int__ = __index__ = __complex__ = __float__  # they raise alike
 
     def __repr__(self) -> str:
         return repr(self.value) if self.constant else f"<{self.op} {self.index}>"
@@ -200,17 +188,10 @@ class Expr:
 @final
 @dataclass(frozen=True, slots=True)
 class RunConstant:
-    """A number that all trajectories of a run share and that may differ from run to run, as a trajectory constant.
-
-    Attributes
-    ----------
-    name : str
-    value : float
-        Its value in the run for which the step was traced.
-    """
+    """A number that all trajectories of a run share and that may differ from run to run, as a trajectory constant."""
 
     name: str
-    value: float
+    value: float  # in the run for which the step was traced
 
     def __call__(self, points: npt.NDArray[Any]) -> npt.NDArray[np.float64]:
         return np.full(points.shape[:-1], self.value)
@@ -219,17 +200,10 @@ class RunConstant:
 @final
 @dataclass(frozen=True, slots=True)
 class LaneConstant:
-    """A number that each trajectory is given, as a trajectory constant that is not a function of the initial point.
-
-    Attributes
-    ----------
-    name : str
-    values : array of shape (L,)
-        Its values in the run for which the step was traced.
-    """
+    """A number that each trajectory is given, as a trajectory constant that is not a function of the initial point."""
 
     name: str
-    values: npt.NDArray[Any]
+    values: npt.NDArray[Any]  # (L,): in the run for which the step was traced
 
     def __call__(self, points: npt.NDArray[Any]) -> npt.NDArray[Any]:
         return self.values
@@ -240,8 +214,7 @@ class LaneConstant:
 
 UNROLLED_OPERATIONS = 28_000
 """Operations of a step up to which code has no loops over entries: it is 2 to 4 times faster, and compiles in 4 s."""
-LEAST_LOOP = 4
-"""Entries from which on an operation is a loop, if there are loops over entries."""
+LEAST_LOOP = 4  # entries from which on an operation is a loop, if there are loops over entries
 
 
 @final
@@ -253,16 +226,8 @@ class LongGraphError(Exception):
 class Table:
     """Coefficients of a map of lists: the sums of c x_i, or of c x_i y_j, over the terms of each row.
 
-    Attributes
-    ----------
-    rows : int
-        Number of results.
-    counts : array of shape (rows,)
-        Numbers of terms of the rows.
-    places : tuple of arrays of shape (terms,)
-        The positions i, or i and j, of each term, row by row.
-    factors : array of shape (terms,)
-        The numbers c.
+    Row by row, `places` are arrays (terms,) of the positions i, or i and j, and `factors` (terms,) the numbers c;
+    `counts` (rows,) are the numbers of terms of the rows.
     """
 
     __slots__ = ("counts", "digest", "factors", "places", "rows")
@@ -302,10 +267,8 @@ TrajectoryConstant: TypeAlias = Callable[[Any], Any]
 """A number of each trajectory, shape (L,), as a function of the initial points (L, N)."""
 
 COMMUTATIVE = frozenset(["add", "mul", "and", "or", "eq", "ne"])
-MAX_TERMS = 10
-"""Sums of at most this many terms are searched for terms that cancel."""
-CANCELLATION_RTOL = 4e-16
-"""Coefficients of a term cancel if their sum is at most this fraction of one of them."""
+MAX_TERMS = 10  # of sums that are searched for terms that cancel
+CANCELLATION_RTOL = 4e-16  # coefficients of a term cancel if their sum is at most this fraction of one of them
 
 
 @final
@@ -369,7 +332,7 @@ class Tape:
         """Tracer of a number, or boolean, that changes in a loop."""
         return self._make("flag" if boolean else "variable", (), name)
 
-    def of(self, x: NumberLike) -> Expr:
+    def of(self, x: object) -> Expr:
         """x as a tracer; numbers and booleans become constants.
 
         Raises

@@ -26,8 +26,7 @@ from liehom.flow.tracing.machine import engine_of, lanes_per_register
 # last axes run on that site. np.roll along an axis of the lattice shifts the sites at which numbers are loaded, and
 # arrays of numbers over the lattice become loads too.
 
-Offset = tuple[int, ...]
-"""A shift of sites, one integer for each axis of the lattice."""
+Offset = tuple[int, ...]  # a shift of sites, one integer for each axis of the lattice
 
 MATRIX_PRODUCTS = frozenset(["matmul", "matvec", "vecmat"])
 REDUCTIONS = frozenset(["sum", "max", "min", "amax", "amin", "prod", "mean", "all", "any", "norm", "cumsum"])
@@ -256,8 +255,7 @@ Plane: TypeAlias = tuple[str, int, int]
 
 PAGE, SKEW = 512, 80
 """Planes begin 80 numbers beyond a multiple of 512: planes that begin alike compete for the same cache lines."""
-SITES_FOR_THREADS = 20_000
-"""Sites from which on threads share a stage."""
+SITES_FOR_THREADS = 20_000  # sites from which on threads share a stage
 
 
 @final
@@ -306,7 +304,7 @@ class LatticeKernel:
 
     def __init__(self, inputs: SiteInputs, stages: list[Stage], time: Expr, size: Expr, coordinates: int) -> None:
         self.stages, self.coordinates, self._inputs = stages, coordinates, inputs
-        self._scalars = {time.value: "%t", size.value: "%h"}
+        self._scalars = time.value, size.value
         self._bound = {x.value: (k, graph) for k, stage in enumerate(stages) for x, graph in stage.values}
         self._loads: list[dict[int, tuple[Plane, tuple[int, ...]]]] = [self._loaded(k) for k in range(len(stages))]
         self._store_values()
@@ -384,10 +382,8 @@ class LatticeKernel:
         for plane in used:
             place = w.emit(f"getelementptr ptr, ptr %planes, i64 {self.places[plane]}")
             w.lines.append(f"  %p{self.places[plane]} = load ptr, ptr {place}")
-        w.lines.append(f"  %t = fadd {v} {w.spread('%time')}, {w.splat(-0.0)}")
-        w.lines.append(f"  %h = fadd {v} {w.spread('%size')}, {w.splat(-0.0)}")
+        names = dict(zip(self._scalars, map(w.spread, ("%time", "%size")), strict=True))
         w.lines += ["  br label %site", "site:", "  %at = phi i64 [%begin, %entry], [%next, %site.end]"]
-        names = dict(self._scalars)
         for index, (plane, offset) in loads.items():
             at = w.emit(f"add i64 %at, {self.layout.distance(offset)}")
             pointer = w.emit(f"getelementptr double, ptr %p{self.places[plane]}, i64 {at}")

@@ -158,20 +158,24 @@ class Writer:
     def _whole(self, x: int) -> str:
         return str(x) if self.width == 1 else "<" + ", ".join([f"i64 {x}"] * self.width) + ">"
 
-    def any(self, mask: str) -> str:
+    def any(self, mask: str, op: str = "or") -> str:
         """Name of the i1 that is true if a mask holds in some lane."""
-        return self._reduced("any", "or", mask)
-
-    def all(self, mask: str) -> str:
-        """Name of the i1 that is true if a mask holds in all lanes."""
-        return self._reduced("all", "and", mask)
-
-    def _reduced(self, name: str, op: str, mask: str) -> str:
         if self.width == 1:
             return mask
         function = f"i1 @llvm.vector.reduce.{op}.v{self.width}i1"
-        self.declared[f"{name}{self.width}"] = f"declare {function}({self.mask})"
+        self.declared[function] = f"declare {function}({self.mask})"
         return self.emit(f"call {function}({self.mask} {mask})")
+
+    def all(self, mask: str) -> str:
+        """Name of the i1 that is true if a mask holds in all lanes."""
+        return self.any(mask, "and")
+
+    def structure(self, values: Sequence[str]) -> str:
+        """Name of a structure of vectors."""
+        result = "poison"
+        for i, x in enumerate(values):
+            result = self.emit(f"insertvalue {struct_of(self, len(values))} {result}, {self.vector} {x}, {i}")
+        return result
 
     def spread(self, x: str) -> str:
         """Name of the vector with the double x in all lanes."""
@@ -194,32 +198,23 @@ def rotation_series(reach: float, first: int) -> list[float]:
     return [(-1) ** k / math.factorial(2 * k + first) for k in range(terms)]
 
 
-def define_rotation(w: Writer) -> None:
-    """Write the function q -> (sin(r)/r, cos(r)), r^2 = q, if it is not there."""
-    if "rotation" in w.functions:
-        return
-    f = Writer(w.width)
-    v, pair = f.vector, f"{{{f.vector}, {f.vector}}}"
-    size = f.intrinsic("fabs", "%q")
+def _rotation(f: Writer) -> list[str]:
+    """Write the function q -> (sin(r)/r, cos(r)), r^2 = q; the names of its results."""
+    v, size = f.vector, f.intrinsic("fabs", "%x")
     f.lines += ["  br label %look", "look:"]
     far = f.any(f.emit(f"fcmp ugt {v} {size}, {f.splat(SHORT_SERIES_REACH)}"))
     f.lines.append(f"  br i1 {far}, label %farther, label %short, !prof !0")
     results = []
     for label, reach in (("short", SHORT_SERIES_REACH), ("long", LONG_SERIES_REACH)):
         f.lines.append(f"{label}:")
-        results.append((label, [f.polynomial(rotation_series(reach, 1 - k), "%q") for k in (0, 1)]))
+        results.append((label, [f.polynomial(rotation_series(reach, 1 - k), "%x") for k in (0, 1)]))
         f.lines.append("  br label %done")
     f.lines.append("farther:")
     out = f.any(f.emit(f"fcmp ugt {v} {size}, {f.splat(LONG_SERIES_REACH)}"))
     f.lines += [f"  br i1 {out}, label %far, label %long, !prof !0", "far:"]
     results.append(("far", _by_library(f, size)))
     f.lines += ["  br label %done", "done:"]
-    chosen = [f.emit(f"phi {v} " + ", ".join(f"[{x[k]}, %{label}]" for label, x in results)) for k in (0, 1)]
-    first = f.emit(f"insertvalue {pair} poison, {v} {chosen[0]}, 0")
-    both = f.emit(f"insertvalue {pair} {first}, {v} {chosen[1]}, 1")
-    head = f"define internal {pair} @rotation({v} %q) alwaysinline {{\nentry:"
-    w.functions["rotation"] = "\n".join([head, *f.lines, f"  ret {pair} {both}", "}"])
-    w.declared |= f.declared
+    return [f.emit(f"phi {v} " + ", ".join(f"[{x[k]}, %{label}]" for label, x in results)) for k in (0, 1)]
 
 
 # sin(x) and cos(x) in LLVM assembly: x minus the nearest multiple of pi/2, which is subtracted in three parts, and the
@@ -230,12 +225,9 @@ HALF_PI = (float.fromhex("0x1.921fb544p+0"), float.fromhex("0x1.0b4611a6p-34"), 
 LARGEST_ANGLE = 1e6
 
 
-def define_turn(w: Writer) -> None:
-    """Write the function x -> (sin(x), cos(x)), if it is not there."""
-    if "turn" in w.functions:
-        return
-    f = Writer(w.width)
-    v, pair = f.vector, f"{{{f.vector}, {f.vector}}}"
+def _turn(f: Writer) -> list[str]:
+    """Write the function x -> (sin(x), cos(x)); the names of its results."""
+    v = f.vector
     f.lines += ["  br label %start", "start:"]
     quarters = f.intrinsic("rint", f.binary("fmul", "%x", f.splat(2 / math.pi)))
     rest = "%x"
@@ -262,19 +254,14 @@ def define_turn(w: Writer) -> None:
         for name, value in zip(("sin", "cos"), values, strict=True)
     ]
     f.lines += ["  br label %done", "done:"]
-    chosen = [f.emit(f"phi {v} [{a}, %start], [{b}, %far]") for a, b in zip(values, far, strict=True)]
-    first = f.emit(f"insertvalue {pair} poison, {v} {chosen[0]}, 0")
-    both = f.emit(f"insertvalue {pair} {first}, {v} {chosen[1]}, 1")
-    head = f"define internal {pair} @turn({v} %x) alwaysinline {{\nentry:"
-    w.functions["turn"] = "\n".join([head, *f.lines, f"  ret {pair} {both}", "}"])
-    w.declared |= f.declared
+    return [f.emit(f"phi {v} [{a}, %start], [{b}, %far]") for a, b in zip(values, far, strict=True)]
 
 
 def _by_library(f: Writer, size: str) -> list[str]:
     """Names of sin(r)/r and cos(r) by libm; lanes with small r use the series."""
     v = f.vector
     r = f.intrinsic("sqrt", size)
-    turns = f.emit(f"fcmp ogt {v} %q, {f.splat(0.0)}")
+    turns = f.emit(f"fcmp ogt {v} %x, {f.splat(0.0)}")
     near = f.emit(f"fcmp olt {v} {size}, {f.splat(SHORT_SERIES_REACH)}")
     # sinh of the large r of a rotation would overflow
     grown = f.emit(f"select {f.mask} {turns}, {v} {f.splat(0.0)}, {v} {r}")
@@ -283,7 +270,7 @@ def _by_library(f: Writer, size: str) -> list[str]:
         a, b = f.library(names[0], r), f.library(names[1], grown)
         value = f.emit(f"select {f.mask} {turns}, {v} {a}, {v} {b}")
         value = f.binary("fdiv", value, r) if first else value
-        short = f.polynomial(rotation_series(SHORT_SERIES_REACH, first), "%q")
+        short = f.polynomial(rotation_series(SHORT_SERIES_REACH, first), "%x")
         results.append(f.emit(f"select {f.mask} {near}, {v} {short}, {v} {value}"))
     return results
 
@@ -295,10 +282,8 @@ def _by_library(f: Writer, size: str) -> list[str]:
 
 LEVELS = ((0.054, 8), (0.28, 12), (0.72, 16), (1.35, 20), (2.1, 24))
 """Norms up to which a polynomial of a degree leaves out less than 1e-17 of the result."""
-MAX_NORM = 32.0
-"""For |A| above, the result is NaN."""
-STRAIGHT_OPERATIONS = 40
-"""Numbers of A and m, together, up to which the polynomial is written without loops."""
+MAX_NORM = 32.0  # for |A| above, the result is NaN
+STRAIGHT_OPERATIONS = 40  # numbers of A and m, together, up to which the polynomial is written without loops
 
 
 def struct_of(w: Writer, count: int) -> str:
@@ -346,9 +331,7 @@ class _Exponential:
         f.lines += [f"  %m{i}.next = select {f.mask} {here}, {v} {x}, {v} %m{i}" for i, x in enumerate(moved)]
         again = f.any(f.emit(f"fcmp olt {v} %part.next, %parts"))
         f.lines += ["  br label %end", "end:", f"  br i1 {again}, label %substep, label %done, !prof !0", "done:"]
-        kind, result = struct_of(f, n), "poison"
-        for i in range(n):
-            result = f.emit(f"insertvalue {kind} {result}, {v} %m{i}.next, {i}")
+        kind, result = struct_of(f, n), f.structure([f"%m{i}.next" for i in range(n)])
         names = [f"%a{p}" for p in range(len(self.places))] + [f"%vin{i}" for i in range(n)]
         self.caller.declared |= f.declared
         head = f'define internal {kind} @"{self.name}"({", ".join(f"{v} {x}" for x in names)}) {{\nentry:'
@@ -588,9 +571,13 @@ class Body:
 
     def _both(self, op: str, name: str) -> tuple[str, str]:
         """Names of both results of `rotation` or `turn`."""
-        w, function = self.writer, "rotation" if op.endswith("q") else "turn"
-        (define_rotation if function == "rotation" else define_turn)(w)
-        kind = struct_of(w, 2)
+        w, kind, function = self.writer, struct_of(self.writer, 2), "rotation" if op.endswith("q") else "turn"
+        if function not in w.functions:
+            f = Writer(w.width)
+            pair = f.structure((_rotation if function == "rotation" else _turn)(f))
+            head = f"define internal {kind} @{function}({w.vector} %x) alwaysinline {{\nentry:"
+            w.functions[function] = "\n".join([head, *f.lines, f"  ret {kind} {pair}", "}"])
+            w.declared |= f.declared
         pair = w.emit(f"call {kind} @{function}({w.vector} {name})")
         return w.emit(f"extractvalue {kind} {pair}, 0"), w.emit(f"extractvalue {kind} {pair}, 1")
 
@@ -653,11 +640,9 @@ class Body:
         return self._slots[x.index]
 
 
-PADDING = 1.5
-"""Largest ratio of the terms of a table to those it really has, if short rows are filled up with zeros."""
+PADDING = 1.5  # largest ratio of the terms of a table to those it really has, if short rows are filled up with zeros
 ROWS_AT_ONCE = 4
-LEAST_VECTORS = 16
-"""Terms from which on LLVM may sum them in vectors, where a block has one lane."""
+LEAST_VECTORS = 16  # terms from which on LLVM may sum them in vectors, where a block has one lane
 Value: TypeAlias = Callable[[str, str, str], str]
 """The name of a value, from the names of the row, of the term within it, and of the term within all."""
 

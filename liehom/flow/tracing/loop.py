@@ -41,42 +41,13 @@ def _printed(x: Expr) -> int | tuple[str, Any]:
     return ("=", x.value) if x.constant else x.index
 
 
-def scalar_while_loop(
-    tape: Tape, start: Sequence[Expr], body: Callable[[list[Expr]], tuple[Sequence[Expr], Expr]], limit: int, *,
-    guarded: bool = False,
-) -> list[Expr]:  # fmt: skip
-    """Tracers of the variables after a loop.
-
-    A lane that has converged iterates along with the others; `body` must keep its numbers, by `Tape.select`.
-    """
-    first, calls, count = len(tape.recorded), tape.calls, len(start)
-    tape.calls = tape.zero
-    variables = [tape.variable((first, i), boolean=x.boolean) for i, x in enumerate(start)]
-    new, again = body(list(variables))
-    if tape.calls is not tape.zero:  # count the calls of psi in each lane's own iterations
-        start = [*start, tape.zero, tape.true]
-        total, wanted = (tape.variable((first, count + i), boolean=i == 1) for i in (0, 1))
-        new = [*new, total + tape.select(wanted, tape.calls, tape.zero), tape.both(wanted, again)]
-        variables += [total, wanted]
-    changing = {x.index for x in variables}
-    inside = []
-    for x in needed([*new, again]):
-        if x.index not in changing and any(a.index in changing for a in x.args):
-            changing.add(x.index)
-            inside.append(x)
-    read = [*new, again, *[a for x in inside for a in x.args]]
-    fixed = {x.index: x for x in read if x.index not in changing and not x.constant}
-    loop = Loop(tuple(variables), tuple(new), again, tuple(inside), limit, guarded)
-    after = tape.block("loop", [*start, *fixed.values()], len(start), loop)
-    tape.calls = calls + after[count] if len(after) > count else calls
-    return after[:count]
-
-
 def while_loop(
     function: Callable[..., tuple[Sequence[Any], Any]], start: Sequence[Any], tape: Tape, limit: int, *,
     guarded: bool = False,
 ) -> list[Traced]:  # fmt: skip
     """Traced arrays after a loop; `function` takes them to (their new values, whether to iterate again).
+
+    A lane that has converged iterates along with the others; `function` must keep its numbers, by `np.where`.
 
     Examples
     --------
@@ -86,38 +57,45 @@ def while_loop(
     <traced array of shape (2,)>
     """
     arrays = [Traced(tape, x) for x in start]
+    before = [e for x in arrays for e in x.entries.flat]
+    first, calls, count = len(tape.recorded), tape.calls, len(before)
     cuts = np.cumsum([x.size for x in arrays])[:-1]
 
     def shaped(entries: Sequence[Expr]) -> list[Traced]:
-        flat = np.empty(len(entries), dtype=object)
+        flat = np.empty(count, dtype=object)
         flat[:] = entries
         return [Traced(tape, e.reshape(x.shape)) for e, x in zip(np.split(flat, cuts), arrays, strict=True)]
 
-    def body(entries: list[Expr]) -> tuple[list[Expr], Expr]:
-        new, again = function(*shaped(entries))
-        return [e for x in new for e in Traced(tape, x).entries.flat], Traced(tape, again).entry
-
-    return shaped(scalar_while_loop(tape, [e for x in arrays for e in x.entries.flat], body, limit, guarded=guarded))
+    tape.calls = tape.zero
+    variables = [tape.variable((first, i), boolean=x.boolean) for i, x in enumerate(before)]
+    values, wish = function(*shaped(variables))
+    new, again = [e for x in values for e in Traced(tape, x).entries.flat], Traced(tape, wish).entry
+    if tape.calls is not tape.zero:  # count the calls of psi in each lane's own iterations
+        before += [tape.zero, tape.true]
+        total, wanted = (tape.variable((first, count + i), boolean=i == 1) for i in (0, 1))
+        new += [total + tape.select(wanted, tape.calls, tape.zero), tape.both(wanted, again)]
+        variables += [total, wanted]
+    changing, inside = {x.index for x in variables}, []
+    for x in needed([*new, again]):
+        if x.index not in changing and any(a.index in changing for a in x.args):
+            changing.add(x.index)
+            inside.append(x)
+    read = [*new, again, *[a for x in inside for a in x.args]]
+    fixed = {x.index: x for x in read if x.index not in changing and not x.constant}
+    loop = Loop(tuple(variables), tuple(new), again, tuple(inside), limit, guarded)
+    after = tape.block("loop", [*before, *fixed.values()], len(before), loop)
+    tape.calls = calls + after[count] if len(after) > count else calls
+    return shaped(after[:count])
 
 
 @final
 @dataclass(frozen=True, slots=True)
 class Sizes:
-    """Outputs of an adaptive traced step; input N + 1 of its graph is then the proposed size, without sign.
+    """Outputs of an adaptive traced step; input N + 1 of its graph is then the proposed size, without sign."""
 
-    Attributes
-    ----------
-    tried : Expr
-        Size of the step that was tried, signed.
-    accepted : Expr
-        Boolean: whether the step is taken.
-    proposal : Expr
-        Size proposed for the next step, whether this one is taken or not.
-    """
-
-    tried: Expr
-    accepted: Expr
-    proposal: Expr
+    tried: Expr  # size of the step that was tried, signed
+    accepted: Expr  # boolean: whether the step is taken
+    proposal: Expr  # size proposed for the next step, whether this one is taken or not
 
 
 @final
@@ -125,53 +103,28 @@ class Sizes:
 class StepGraph:
     """Graph of a traced step: inputs 0..N-1 are the point, N the time, N + 1 the step size, -1, -2, ... constants.
 
-    Attributes
-    ----------
-    point : list of Expr
-        Coordinates of the point after the step.
-    elapsed : Expr or None
-        Time that passes in the step; None if it is the step size.
-    ordinary : Expr or None
-        Boolean: whether the step is certainly an ordinary one, that is, its clock is increasing at an admissible rate
-        and its equations were solved. None if it always is.
-    largest, summed : dict of str to Expr
-        Numbers by name; the run records their largest value, which is -inf before the first step, or their sum, over
-        the steps taken. The name "-x" stands for the negative of a number x of which the smallest value is recorded.
-    constant_functions : tuple of callable
-        Inputs -1, -2, ...: numbers that are constant along a trajectory, as functions of the initial points (L, N).
-    clock : tuple of (int, Expr)
-        (k, c_k): the time h + c_2 h^2 + ... passes in a step of size h.
-    solved : Expr or None
-        Boolean: whether all equations of the step were solved (`ordinary` implies it); None if there are none.
-    sizes : Sizes or None
-        None if the step size is fixed.
-    calls : int or None
-        Calls of psi in a step. None if their number depends on values; `summed["calls"]` then counts them.
-    reached : Expr or None
-        Boolean: whether input N + 2, the time of the next stop, is within the step; the point is then that at the stop,
-        and `elapsed` the time that passes in the whole step. None if the graph knows of no stops.
-    tried : Expr or None
-        The signed size of the step, to the stop if it is reached.
-    first : Expr or None
-        Size of the first step, without sign, where none is proposed; a function of point and time.
-    guard : Expr or None
-        Boolean: whether a run may begin at the initial point, a function of it; None if it may.
+    Input N + 2 is the time of the next stop, if the graph knows of stops; else `reached` and `tried` are None. The run
+    records the largest value of the numbers in `largest`, which is -inf before the first step, and the sum of those in
+    `summed`, over the steps taken. The name "-x" stands for the negative of a number x of which the smallest value is
+    recorded. Booleans that always hold are None.
     """
 
-    point: list[Expr]
-    elapsed: Expr | None
-    ordinary: Expr | None
+    point: list[Expr]  # coordinates of the point after the step, or at the stop
+    elapsed: Expr | None  # time that passes in the whole step; None if it is the step size
+    ordinary: Expr | None  # boolean, whether the clock is certainly admissible and all equations were solved
     largest: dict[str, Expr]
     summed: dict[str, Expr]
-    constant_functions: tuple[TrajectoryConstant, ...] = ()
-    clock: tuple[tuple[int, Expr], ...] = ()
-    solved: Expr | None = None
-    sizes: Sizes | None = None
-    calls: int | None = 0
-    reached: Expr | None = None
-    tried: Expr | None = None
-    first: Expr | None = None
-    guard: Expr | None = None
+    constant_functions: tuple[TrajectoryConstant, ...] = ()  # inputs -1, -2, ... as functions of initial points (L, N)
+    clock: tuple[tuple[int, Expr], ...] = ()  # (k, c_k): the time h + c_2 h^2 + ... passes in a step of size h
+    solved: Expr | None = None  # boolean, whether all equations were solved
+    sizes: Sizes | None = None  # of steps of adaptive sizes
+    calls: int | None = (
+        0  # of psi in a step, or None if their number depends on values and `summed["calls"]` counts them
+    )
+    reached: Expr | None = None  # boolean, whether the stop is within the step
+    tried: Expr | None = None  # signed size of the step, to the stop if it is reached
+    first: Expr | None = None  # size of the first step, without sign, if none is proposed: a function of point and time
+    guard: Expr | None = None  # boolean, whether a run may begin at the initial point
 
     @property
     def size(self) -> int:

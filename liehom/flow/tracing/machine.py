@@ -26,12 +26,7 @@ from liehom.flow.tracing.llvm_text import LIBM
 from liehom.flow.tracing.loop import StepGraph
 from liehom.flow.tracing.run_text import FIELDS, FLOATS, Constant, run_module, state_names
 
-Engine: TypeAlias = Any
-"""An execution engine of llvmlite, which has no types."""
-
-TargetMachine: TypeAlias = Any
-"""A target machine of llvmlite."""
-
+Engine: TypeAlias = Any  # an execution engine, or a target machine, of llvmlite, which has no types
 _ENGINES: dict[str, Engine] = {}
 
 
@@ -57,13 +52,6 @@ def _host() -> tuple[ModuleType, str, dict[str, bool]]:
     return llvm, f"{llvmlite.__version__}{llvm.llvm_version_info}{name}{features.flatten()}{triple}", dict(features)
 
 
-def _target_machine(llvm: ModuleType) -> TargetMachine:
-    """A target machine for this processor; an engine owns its own."""
-    features = llvm.get_host_cpu_features().flatten()
-    target = llvm.Target.from_triple(llvm.get_process_triple())
-    return target.create_target_machine(cpu=llvm.get_host_cpu_name(), features=features, opt=3, jit=True)
-
-
 def cache_directory() -> Path | None:
     """Folder of the cached machine code, LIEHOM_CACHE_DIR or ~/.cache/liehom; None if that variable is empty."""
     folder = os.environ.get("LIEHOM_CACHE_DIR")
@@ -79,7 +67,9 @@ def engine_of(text: str) -> tuple[Engine, bool]:
     key = hashlib.sha256((stamp + text).encode()).hexdigest()
     if key in _ENGINES:
         return _ENGINES[key], True
-    machine = _target_machine(llvm)
+    target, features = llvm.Target.from_triple(llvm.get_process_triple()), llvm.get_host_cpu_features().flatten()
+    # an engine owns its machine
+    machine = target.create_target_machine(cpu=llvm.get_host_cpu_name(), features=features, opt=3, jit=True)
     engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), machine)
     folder = _private_cache()
     cached = None if folder is None else _read(folder / f"{key}.o", key)
@@ -93,7 +83,7 @@ def engine_of(text: str) -> tuple[Engine, bool]:
     return engine, cached is not None
 
 
-def _compiled(llvm: ModuleType, machine: TargetMachine, text: str) -> bytes:
+def _compiled(llvm: ModuleType, machine: Engine, text: str) -> bytes:
     module = llvm.parse_assembly(text)
     module.verify()
     options = llvm.PipelineTuningOptions(2)
@@ -168,6 +158,7 @@ class Kernel:
     engine: ClassVar[str] = "llvm"  # as reports name it
     in_lockstep: ClassVar[bool] = True  # whether lanes make steps of one size together, without stops of their own
     tracing: ClassVar[dict[str, Any]] = {}  # options of a trace
+    _has_prologue: ClassVar[bool] = True  # whether it computes constants of the trajectories
     cost: ClassVar[int] = 1  # duration of an operation, in units of one of machine code
 
     def __init__(self, graph: StepGraph, width: int) -> None:
@@ -187,9 +178,10 @@ class Kernel:
         if isinstance(function, RunConstant):
             self.run_constants.append(function.name)
             return "run", len(self.run_constants) - 1
-        traced = None if isinstance(function, LaneConstant) else _on_tracers(function, self.graph)
-        if traced is not None:
-            return traced
+        if self._has_prologue and not isinstance(function, LaneConstant):
+            traced = _on_tracers(function, self.graph)
+            if traced is not None:
+                return traced
         self.lane_constants.append(function)
         return "lane", len(self.lane_constants) - 1
 

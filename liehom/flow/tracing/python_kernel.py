@@ -20,9 +20,7 @@ from liehom.flow.tracing.llvm_text import LEVELS, LIBM, LONG_SERIES_REACH, MAX_N
 from liehom.flow.tracing.machine import Kernel
 from liehom.flow.tracing.run_text import DONE, FAILED, Constant
 
-Numbers: TypeAlias = Sequence[Any]
-"""Python's floats and booleans."""
-
+Numbers: TypeAlias = Sequence[Any]  # Python's floats and booleans
 SIGNS = {"add": "+", "sub": "-", "mul": "*", "div": "/", "lt": "<", "le": "<=", "eq": "==", "ne": "!=", "and": " and "}
 DEEPEST = 20  # operations in one statement, one within the other
 TOP = LEVELS[-1][0]

@@ -164,9 +164,7 @@ class _RunWriter:
             first.write(needed([graph.first]))
             unknown = w.emit(f"fcmp oeq {self.v} {state['h']}, {w.splat(float('inf'))}")
             state["h"] = self._select(unknown, first.name(graph.first), state["h"])
-        before = w.label
-        self._before_loop(state)
-        self._loop_head(state, before)
+        self._loop_head(state, w.label)
 
     def _loop_head(self, state: dict[str, str], before: str) -> None:
         """Begin the loop over steps with a state, from a basic block."""
@@ -179,9 +177,6 @@ class _RunWriter:
 
     def _constant(self, kind: str, number: int) -> str:
         return self._shared("%constants", number) if kind == "run" else self._loaded("%rows", number)
-
-    def _before_loop(self, state: dict[str, str]) -> None:
-        """Write what else is needed before the loop."""
 
     # -- steps -----------------------------------------------------------------------------------------------
     def _loop(self) -> None:
@@ -377,9 +372,10 @@ class _OwnSizes(_RunWriter):
     The number of the next step of the last block is left in `begin`.
     """
 
-    def _before_loop(self, state: dict[str, str]) -> None:
-        self.line(f"%stop.time.start = fadd {self.v} {self._at_stops(state['stop'])}, {self.w.splat(-0.0)}")
-        self.before = self.w.label
+    def _loop_head(self, state: dict[str, str], before: str) -> None:
+        start = self._at_stops(state["stop"])
+        super()._loop_head(state, before)
+        self.line(f"%stop.time = phi {self.v} [{start}, %{before}], [%stop.time.next, %step.end]")
 
     def _at_stops(self, number: str) -> str:
         """The times of the stops of these numbers."""
@@ -401,7 +397,6 @@ class _OwnSizes(_RunWriter):
 
     def _loop(self) -> None:
         w, v, graph = self.w, self.v, self.graph
-        self.line(f"%stop.time = phi {v} [%stop.time.start, %{self.before}], [%stop.time.next, %step.end]")
         body = self._body({self.n: "%t", self.n + 1: "%h", self.n + 2: "%stop.time"})
         more = w.emit(f"fadd {v} %count, {w.splat(1.0)}")
         new = {f"x{i}": body.name(x) for i, x in enumerate(graph.point)} | self._recorded(body) | {"count": more}

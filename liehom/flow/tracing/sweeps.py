@@ -11,7 +11,8 @@ from typing import Any, TypeAlias, final
 import numpy as np
 
 from liehom.base.errors import TraceError
-from liehom.base.typing import Array
+from liehom.base.lazy import Module
+from liehom.base.typing import Array, Lanes
 from liehom.flow.tracing.array import Traced, entire_function
 from liehom.flow.tracing.graph import COARSE, OPERATORS, Expr, needed
 from liehom.flow.tracing.llvm_text import SHORT_SERIES_REACH, rotation_series
@@ -19,11 +20,7 @@ from liehom.flow.tracing.llvm_text import SHORT_SERIES_REACH, rotation_series
 # Derivatives of a recorded graph in reverse mode: one pass backwards gives all partial derivatives as graphs, at a
 # few times the cost of the function; and the value of a graph by numpy's functions, on arrays, Jets and tracers.
 
-Number: TypeAlias = Any
-"""A number of a graph, or an array of such numbers."""
-
-SINQ_TERMS = 10
-"""Terms of the derivative of sin(r)/r by r^2, for |r| <= 1."""
+SINQ_TERMS = 10  # of the derivative of sin(r)/r by r^2, for |r| <= 1
 
 
 def gradient(output: Expr, inputs: Sequence[Expr]) -> list[Expr]:
@@ -53,20 +50,22 @@ def evaluated(outputs: Sequence[Expr], inputs: Mapping[int, Any]) -> list[Any]:
     """List of the outputs of a graph, computed by numpy on arrays of any precision, Jets or tracers."""
     values: dict[int, Any] = {}
     for x in needed(outputs):
-        if x.constant:
-            values[x.index] = x.value
-        elif x.op == "input":
-            values[x.index] = inputs[x.value]
-        else:
-            values[x.index] = applied(np, x.op, [values[a.index] for a in x.args])
+        values[x.index] = _value_of(x, values, inputs)
     return [values[x.index] for x in outputs]
+
+
+def _value_of(x: Expr, values: Mapping[int, Any], inputs: Mapping[int, Any]) -> Lanes:
+    """The value of an elementary operation, an input or a constant, from those before."""
+    if x.constant:
+        return x.value
+    return inputs[x.value] if x.op == "input" else applied(np, x.op, [values[a.index] for a in x.args])
 
 
 # names in numpy of operations that have another one
 NAMES = {"and": "logical_and", "not": "logical_not", "select": "where"}
 
 
-def applied(xp: ModuleType, op: str, args: Sequence[Number]) -> Any:
+def applied(xp: ModuleType, op: str, args: Sequence[Lanes]) -> Any:
     """The value of an elementary operation, by numpy or by JAX."""
     if op in ("sinq", "cosq"):
         return rotation(xp, args[0], int(op == "sinq"))
@@ -78,7 +77,7 @@ def applied(xp: ModuleType, op: str, args: Sequence[Number]) -> Any:
     return function(*args)
 
 
-def rotation(xp: ModuleType, q: Number, first: int) -> Any:
+def rotation(xp: ModuleType, q: Lanes, first: int) -> Any:
     """sin(r)/r (first = 1) or cos(r) (first = 0) with r^2 = q; neither value nor derivative of any branch overflows."""
     near = xp.abs(q) < SHORT_SERIES_REACH
     total: Any = 0.0
@@ -91,7 +90,7 @@ def rotation(xp: ModuleType, q: Number, first: int) -> Any:
     return xp.where(near, total, xp.where(safe > 0, round_, straight))
 
 
-def partials(op: str, args: Sequence[Number], value: Number, *, fixed_exponent: bool = False) -> tuple[Number, ...]:
+def partials(op: str, args: Sequence[Lanes], value: Lanes, *, fixed_exponent: bool = False) -> tuple[Lanes, ...]:
     """The partial derivatives of an operation by its arguments, arrays or tracers, one for each."""
     match op:
         case "add":
@@ -117,7 +116,7 @@ def partials(op: str, args: Sequence[Number], value: Number, *, fixed_exponent: 
     return (SLOPES[op](args[0], value),)
 
 
-def _sinq_slope(q: Number, x: Number) -> Number:
+def _sinq_slope(q: Lanes, x: Lanes) -> Lanes:
     """Derivative of sin(r)/r by q = r^2: (cos(r) - sin(r)/r) / 2q, and near q = 0 its series."""
     near = np.abs(q) < 1.0
     total: Any = 0.0
@@ -126,48 +125,33 @@ def _sinq_slope(q: Number, x: Number) -> Number:
     return np.where(near, total, 0.5 * (_rotation_of("cosq", q) - x) / np.where(near, 1.0, q))
 
 
-def _rotation_of(name: str, q: Number) -> Number:
+def _rotation_of(name: str, q: Lanes) -> Lanes:
     """sin(r)/r or cos(r) of r^2, an array or a tracer."""
     return entire_function(name, q) if isinstance(q, Traced) else applied(np, name, [q])
 
 
 # The slope of a function of one number, from its argument and its value; the first rows are those of series, too.
 SLOPES: dict[str, Callable[[Any, Any], Any]] = {
-    "exp": lambda x, y: y,
-    "expm1": lambda x, y: y + 1,
-    "log": lambda x, y: 1 / x,
-    "log1p": lambda x, y: 1 / (x + 1),
-    "tan": lambda x, y: y * y + 1,
-    "tanh": lambda x, y: 1 - y * y,
-    "arctan": lambda x, y: 1 / (x * x + 1),
-    "arcsin": lambda x, y: 1 / np.sqrt(1 - x * x),
-    "arccos": lambda x, y: -1 / np.sqrt(1 - x * x),
-    "arcsinh": lambda x, y: 1 / np.sqrt(x * x + 1),
+    "exp": lambda x, y: y, "expm1": lambda x, y: y + 1, "log": lambda x, y: 1 / x, "log1p": lambda x, y: 1 / (x + 1),
+    "tan": lambda x, y: y * y + 1, "tanh": lambda x, y: 1 - y * y, "arctan": lambda x, y: 1 / (x * x + 1),
+    "arcsin": lambda x, y: 1 / np.sqrt(1 - x * x), "arccos": lambda x, y: -1 / np.sqrt(1 - x * x),
+    "arcsinh": lambda x, y: 1 / np.sqrt(x * x + 1), "arctanh": lambda x, y: 1 / (1 - x * x),
     "arccosh": lambda x, y: 1 / (np.sqrt(x - 1) * np.sqrt(x + 1)),
-    "arctanh": lambda x, y: 1 / (1 - x * x),
-}
+}  # fmt: skip
 CHAINED = tuple(SLOPES)
 SLOPES |= {
-    "sqrt": lambda x, y: 0.5 / y,
-    "cbrt": lambda x, y: 1 / (3 * y * y),
-    "sin": lambda x, y: np.cos(x),
-    "cos": lambda x, y: -np.sin(x),
-    "sinh": lambda x, y: np.cosh(x),
-    "cosh": lambda x, y: np.sinh(x),
-    "exp2": lambda x, y: math.log(2) * y,
-    "log2": lambda x, y: 1 / (math.log(2) * x),
-    "log10": lambda x, y: 1 / (math.log(10) * x),
-    "sinq": _sinq_slope,
-    "cosq": lambda q, y: -0.5 * _rotation_of("sinq", q),
-    "abs": lambda x, y: np.where(x < 0, -1.0, 1.0),
-}
+    "sqrt": lambda x, y: 0.5 / y, "cbrt": lambda x, y: 1 / (3 * y * y), "sin": lambda x, y: np.cos(x),
+    "cos": lambda x, y: -np.sin(x), "sinh": lambda x, y: np.cosh(x), "cosh": lambda x, y: np.sinh(x),
+    "exp2": lambda x, y: math.log(2) * y, "log2": lambda x, y: 1 / (math.log(2) * x),
+    "log10": lambda x, y: 1 / (math.log(10) * x), "abs": lambda x, y: np.where(x < 0, -1.0, 1.0),
+    "sinq": _sinq_slope, "cosq": lambda q, y: -0.5 * _rotation_of("sinq", q),
+}  # fmt: skip
 
 
 # A recorded graph on arrays of one entry per lane: its values in one forward sweep, and weights of the outputs times
 # the derivatives of the graph in one backward sweep, at a few times the cost.
 
-EXP_TERMS = 18
-"""Terms of exp(A) for |A| <= 1, to double precision."""
+EXP_TERMS = 18  # of exp(A) for |A| <= 1, to double precision
 
 
 @final
@@ -184,25 +168,22 @@ class Sweeps:
                 self._values[x.index] = self._value(x, inputs)
         self.values: list[Array] = [np.broadcast_to(self._values[x.index], (lanes,)) for x in outputs]
 
-    def _value(self, x: Expr, inputs: Mapping[int, Array | float]) -> Number:
-        if x.constant:
-            return x.value
-        if x.op == "input":
-            return inputs[x.value]
-        args = [self._values[a.index] for a in x.args]
+    def _value(self, x: Expr, inputs: Mapping[int, Array | float]) -> Lanes:
         if x.op == "get":
-            return args[0][x.value]
+            return self._values[x.args[0].index][x.value]
         if x.op == "expv":  # exp(A) v, shape (n, L), of the entries of A and v
-            matrix, vector = self._parts(x.value, args)
+            matrix, vector = self._parts(x)
             return np.moveaxis((exponentials(matrix) @ vector[..., None])[..., 0], -1, 0)
         if x.op in ("loop", "map", "table"):
             raise TraceError(
                 "the derivative of a step with an iteration is not known: take an explicit method, or differentiate "
                 "with JAX (engine='jax')"
             )
-        return applied(np, x.op, args)
+        return _value_of(x, self._values, inputs)
 
-    def _parts(self, places: tuple[tuple[int, int], ...], args: list[Any]) -> tuple[Array, Array]:
+    def _parts(self, x: Expr) -> tuple[Array, Array]:
+        """The matrices and the vectors of an exponential."""
+        args, places = [self._values[a.index] for a in x.args], x.value
         n = len(args) - len(places)
         matrix = np.zeros((self.lanes, n, n))
         for (i, j), value in zip(places, args, strict=False):
@@ -235,7 +216,7 @@ class Sweeps:
                     seeds[argument.index] = seeds[argument.index] + part if argument.index in seeds else part
         return sums
 
-    def _through(self, x: Expr, seed: Number) -> list[tuple[Expr, Any]]:
+    def _through(self, x: Expr, seed: Lanes) -> list[tuple[Expr, Any]]:
         """The weights of the arguments of an operation, from the weight of its result."""
         args = [self._values[a.index] for a in x.args]
         if x.op == "select":
@@ -252,7 +233,7 @@ class Sweeps:
 
         They are exp(A)^T w for v, and for A the block (1, 2) of exp of ((A^T, w v^T), (0, A^T)).
         """
-        matrix, vector = self._parts(x.value, [self._values[a.index] for a in x.args])
+        matrix, vector = self._parts(x)
         n = vector.shape[-1]
         weight = np.stack([np.broadcast_to(seeds.get(i, 0.0), (self.lanes,)) for i in range(n)], axis=-1)
         double = np.zeros((self.lanes, 2 * n, 2 * n))
@@ -283,6 +264,9 @@ def exponentials(matrices: Array) -> Array:
 
 JaxArray: TypeAlias = Any
 """A JAX array or tracer, a numpy array or a number."""
+jax: Any = Module("jax")
+jnp: Any = Module("jax.numpy")
+lax: Any = Module("jax.lax")
 
 EXP_SUBSTEPS, JAX_EXP_TERMS = 4, 18
 """Numbers of substeps and of terms in which exp(A) m is summed; enough for |A| <= 4, beyond that the result is NaN."""
@@ -292,14 +276,10 @@ def evaluate_with_jax(
     outputs: Sequence[Expr], inputs: Mapping[int, JaxArray], *, differentiable: bool = False
 ) -> list[JaxArray]:
     """List of the outputs of a graph, computed by jax.numpy."""
-    try:
-        import jax.numpy as jnp
-    except ImportError:
-        raise TraceError('engine="jax" needs JAX: pip install jax') from None
     values: dict[int, Any] = {}
     for x in needed(outputs):
         if not _of_loop(x):
-            values[x.index] = _value(jnp, x, values, inputs, differentiable)
+            values[x.index] = _value(x, values, inputs, differentiable)
     return [_known(x, values) for x in outputs]
 
 
@@ -314,7 +294,7 @@ def _known(x: Expr, values: Mapping[int, JaxArray]) -> Any:
     return x.value if x.constant else values[x.index]
 
 
-def _array(jnp: ModuleType, some: Sequence[Expr], values: Mapping[int, JaxArray]) -> Any:
+def _array(some: Sequence[Expr], values: Mapping[int, JaxArray]) -> Any:
     """Numbers of a graph as one array, along its first axis."""
     if all(x.constant for x in some):
         return np.array([x.value for x in some])
@@ -324,17 +304,17 @@ def _array(jnp: ModuleType, some: Sequence[Expr], values: Mapping[int, JaxArray]
     return jnp.stack(jnp.broadcast_arrays(*[jnp.asarray(_known(x, values), dtype=float) for x in some]))
 
 
-def _entries(jnp: ModuleType, x: Expr, values: Mapping[int, JaxArray]) -> Any:
+def _entries(x: Expr, values: Mapping[int, JaxArray]) -> Any:
     """The results of a "map" or a "table", along the first axis of an array."""
     if x.op == "map":
         name, size = x.value
-        lists = [_array(jnp, x.args[i : i + size], values) for i in range(0, len(x.args), size)]
+        lists = [_array(x.args[i : i + size], values) for i in range(0, len(x.args), size)]
         axes = max(a.ndim for a in lists)
         return applied(jnp, name, [a.reshape(size, *[1] * (axes - a.ndim), *a.shape[1:]) for a in lists])
     table, first = x.value
     places, factors = table.padded()
     some = x.args[:first], x.args[first:]
-    lists = [_array(jnp, part, values) for part, _ in zip(some, places, strict=False)]
+    lists = [_array(part, values) for part, _ in zip(some, places, strict=False)]
     if len(lists) == 1 and bool((places[0] == np.arange(first)).all()):
         return jnp.tensordot(factors, lists[0], 1)
     axes = max(a.ndim for a in lists) - 1
@@ -344,29 +324,25 @@ def _entries(jnp: ModuleType, x: Expr, values: Mapping[int, JaxArray]) -> Any:
     return total.sum(axis=1)
 
 
-def _value(
-    jnp: ModuleType, x: Expr, values: Mapping[int, JaxArray], inputs: Mapping[int, JaxArray], differentiable: bool
-) -> Any:
+def _value(x: Expr, values: Mapping[int, Any], inputs: Mapping[int, Any], differentiable: bool) -> Any:
     if x.constant:
         return x.value
     if x.op == "input":
         return inputs[x.value]
     if x.op in ("map", "table"):
-        return _entries(jnp, x, values)
+        return _entries(x, values)
     if x.op == "loop":
-        return _iterated(jnp, x, values, differentiable)
+        return _iterated(x, values, differentiable)
     args = [_known(a, values) for a in x.args]
     if x.op == "get":
         return args[0][x.value]
     if x.op == "expv":
-        return _exponential(jnp, x.value, args)
+        return _exponential(x.value, args)
     return applied(jnp, x.op, args)
 
 
-def _iterated(jnp: ModuleType, x: Expr, values: Mapping[int, JaxArray], differentiable: bool) -> list[JaxArray]:
+def _iterated(x: Expr, values: Mapping[int, JaxArray], differentiable: bool) -> list[JaxArray]:
     """The values of the variables after a loop."""
-    from jax import lax
-
     loop = x.value
     before = [jnp.asarray(_known(a, values)) for a in x.args]
     shape = jnp.broadcast_shapes(*[a.shape for a in before])
@@ -379,7 +355,7 @@ def _iterated(jnp: ModuleType, x: Expr, values: Mapping[int, JaxArray], differen
         known = dict(values) | {v.index: s for v, s in zip(loop.variables, state, strict=True)}
         for y in loop.inside:
             if not _of_loop(y):
-                known[y.index] = _value(jnp, y, known, {}, differentiable)
+                known[y.index] = _value(y, known, {}, differentiable)
         new = [jnp.broadcast_to(_known(y, known), shape) for y in loop.new]
         return new, jnp.any(_known(loop.again, known))
 
@@ -396,9 +372,7 @@ def _iterated(jnp: ModuleType, x: Expr, values: Mapping[int, JaxArray], differen
     return list(state)
 
 
-def _exponential(jnp: ModuleType, places: tuple[tuple[int, int], ...], args: list[JaxArray]) -> list[JaxArray]:
-    from jax import lax
-
+def _exponential(places: tuple[tuple[int, int], ...], args: list[JaxArray]) -> list[JaxArray]:
     shape = jnp.broadcast_shapes(*[jnp.shape(a) for a in args])
     args = [jnp.broadcast_to(jnp.asarray(a, dtype=float), shape) for a in args]
     entries, m = args[: len(places)], jnp.stack(args[len(places) :])

@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import liehom as lh
-from liehom.flow.run.control import Tolerance, next_size
+from liehom.flow.run.control import allowed_error, next_size
 from liehom.flow.steps.step import size_from_defects
 
 BODY = lh.GeneratorField(lh.defining(lh.so(3)), lambda m: m * [1.0, 2.0, 3.0] + 0.3)
@@ -191,4 +191,4 @@ def test_rules_for_step_sizes() -> None:
     assert np.isclose(size_from_defects(((3, np.array(1e-9)),), one, np.array(1e-9), inf), 0.9 * 0.1**0.5)
     assert np.isnan(size_from_defects(((3, np.array(np.nan)),), one, one, one))
     assert next_size(one, np.array(1.0), 5) == 0.9 and next_size(one, np.array(1e-30), 5) == 5
-    assert Tolerance(0.0, 0.0).norm(np.array([3.0, 4.0])) == 50 * np.finfo(float).eps
+    assert allowed_error(0.0, 0.0, np.array([3.0, 4.0])) == 50 * np.finfo(float).eps

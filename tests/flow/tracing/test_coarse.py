@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from liehom.flow.engines.jax_kernel import enabled_x64
+from liehom.flow.engines.jax_loops import enabled_x64
 from liehom.flow.series.arrays import coarse
 from liehom.flow.tracing.graph import COARSE, FOLDED, MIDDLE
 from liehom.flow.tracing.llvm_text import Writer

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import liehom as lh
-from liehom.flow.engines import jax_kernel, llvm_engine
+from liehom.flow.engines import jax_loops, llvm_engine
 from liehom.flow.engines.traced_step import traced_step
 from liehom.flow.tracing.array import Traced, contracted
 from liehom.flow.tracing.graph import LongGraphError, Table, Tape, needed
@@ -72,7 +72,7 @@ def test_calls_on_spheres_are_made_again_by_a_plan(monkeypatch: pytest.MonkeyPat
 @pytest.mark.parametrize("name", ["elementary functions", "einsum"])
 def test_jax_computes_with_arrays_in_place_of_loops(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("jax")
-    monkeypatch.setitem(jax_kernel.JaxKernel.tracing, "unrolled", 1)
+    monkeypatch.setitem(jax_loops.JaxKernel.tracing, "unrolled", 1)
     field, start = lh.GeneratorField(lh.defining(lh.so(K)), PSIS[name]), _points(3)
     options: dict[str, Any] = {"step": lh.Taylor(3), "t_eval": [0.4, 1.0], "dt": 0.05}
     wanted = lh.integrate(field, (0.0, 1.0), start, **options)
