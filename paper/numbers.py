@@ -53,7 +53,7 @@ def numbers() -> dict[str, str]:
     theorems = cells("formal.md", "theorems")[2:]
     values["algebras"] = said("performance-exact.md", r"questions are asked of (\d+) algebras")
     values["problems many"] = said("performance.md", r"10,000 trajectories on \d+ of (\d+) problems")
-    values["call"] = said("performance.md", r"^\| fixed step size;.*\| (\d+ to \d+) \|$")
+    values["call"] = said("performance.md", r"^\| fixed step size;.*\| ([\d.]+ to [\d.]+) \|$")
     lines = sum(len(file.read_text().splitlines()) for file in (ROOT / "docs/formal/theories").glob("*.v"))
     return values | {"theorems": str(len(theorems)), "coq lines": f"{lines:,}"}
 
