@@ -247,7 +247,7 @@ ONE = {
     "powers": lambda m: m ** np.array([1, 2, 3]),
     "einsum": lambda m: np.einsum("aij,i,j->a", np.stack([A, A.T]), m[0], m[1]),
     "einsum 3": lambda m: np.einsum("ij,jk,kl->il", m, m, m),
-    "logaddexp": lambda m: np.log(np.exp(m) + np.exp(2 * m)),
+    "logaddexp": lambda m: np.logaddexp(m, 2 * m) if isinstance(m, Jet) else np.log(np.exp(m) + np.exp(2 * m)),
     "add.reduce": lambda m: np.add.reduce(m, axis=1),
     "multiply.reduce": lambda m: np.multiply.reduce(m),
     "real": lambda m: np.asarray(m) if isinstance(m, np.ndarray) else np.real(m),
