@@ -160,8 +160,9 @@ def test_switching_takes_the_time_of_the_formula(field: float, anisotropy: float
 def test_switching_that_does_not_happen_is_refused() -> None:
     with pytest.raises(lh.errors.InputError, match=r"side of -0\.5"):
         switching_time(-0.9, 0.5, field=1.0, anisotropy=1.0, damping=0.1)
-    with pytest.raises(lh.errors.InputError, match="between -1 and 1"):
-        switching_time(-1.0, 0.5, field=1.0, damping=0.1)
+    for ends in ((-1.0, 0.5), (1.0, 0.5), (0.5, -1.0), (0.5, 1.0)):
+        with pytest.raises(lh.errors.InputError, match="between -1 and 1"):
+            switching_time(*ends, field=1.0, damping=0.1)
     with pytest.raises(lh.errors.InputError, match="no switching without damping"):
         switching_time(-0.5, 0.5, field=1.0, damping=0.0)
 
