@@ -42,12 +42,9 @@ SLACK = 1e-9  # a step that ends this close to the end of the integration, in un
 
 
 def clock_at(local: LocalStep, h: Values) -> tuple[BooleanArray, Array]:
-    """Whether the clock is admissible over [0, h], bool (...,), and the time τ(h), both for h of shape (...,)."""
-    size: Any = h
-    if not local.clock:
-        return np.ones(np.shape(size), dtype=bool), size
-    passed: Any = local.time(size)
-    return is_admissible(local.clock, size), passed
+    """Whether a clock is admissible over [0, h], bool (...,), and the time τ(h), both for h of shape (...,)."""
+    passed: Any = local.time(h)
+    return is_admissible(local.clock, h), passed
 
 
 def is_admissible(clock: Sequence[tuple[int, Values]], h: Values) -> BooleanArray:
