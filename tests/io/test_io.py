@@ -576,3 +576,10 @@ def test_certificates_and_verdicts_are_named_where_a_pair_is_read(tmp_path: Path
         lh.dump(thing, tmp_path / "file.json")
         with pytest.raises(lh.errors.FormatError, match=f"this is {kind}.*liehom.Certificate.from_json"):
             lh.load(tmp_path / "file.json")
+
+
+@pytest.mark.parametrize(
+    ("value", "text"), [(0.75, "3/4"), (0.0, "0"), (1.1e-12, "11/10000000000000"), (1e-12, "p/q"), (1e15, "p/q")]
+)
+def test_floats_are_answered_with_the_fractions_that_they_were_meant_to_be(value: float, text: str) -> None:
+    assert json_reader.fraction_for(value) == text

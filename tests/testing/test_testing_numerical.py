@@ -7,6 +7,7 @@ import pytest
 
 import liehom as lh
 from liehom.base.errors import ConformanceError
+from liehom.flow.series.jet import Jet
 from liehom.testing import check_order, check_space
 
 ACTIONS = {
@@ -51,6 +52,19 @@ def test_an_action_that_leaves_the_orbit_is_caught() -> None:
     with pytest.raises(ConformanceError) as caught:
         check_space(lh.Action(rho, naive))
     assert caught.value.check in ("inverse", "orbit")
+
+
+def test_an_action_that_is_another_one_on_series_is_caught() -> None:
+    exact = lh.Action(lh.adjoint(lh.so(3)))
+
+    def slower(x: Any, m: Any) -> Any:
+        once = exact.infinitesimal(x, m)
+        twice = exact.infinitesimal(x, once)
+        return m + once + twice / 2 if isinstance(x, Jet) else exact.act(x, m)
+
+    with pytest.raises(ConformanceError) as caught:
+        check_space(lh.Action(lh.adjoint(lh.so(3)), slower))
+    assert caught.value.check == "series"
 
 
 @pytest.mark.parametrize("step", STEPS, ids=repr)

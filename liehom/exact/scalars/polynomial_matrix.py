@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import functools
 import random
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from functools import cached_property
 from itertools import combinations, combinations_with_replacement, product
@@ -19,7 +19,7 @@ from typing import NamedTuple, TypeAlias, cast, final
 
 import flint
 
-from liehom.base.budget import within
+from liehom.base.budget import in_time, within
 from liehom.base.errors import FieldError, InputError, InternalError, ShapeError
 from liehom.base.typing import Expression, ScalarLike
 from liehom.exact.scalars.exact_field import ExactField, ExactMatrix
@@ -632,8 +632,12 @@ def invariant_polynomials(actions: Sequence[ExactMatrix], variables: int, degree
     within("memory", 80 * count, f"the {count} monomials of degree {degree} need {{}} bytes")
     images = [_images(a) for a in actions]
     weights = [[dict(row).get(j, 0) for j, row in enumerate(image)] for image in images if _is_diagonal(image)]
-    candidates = combinations_with_replacement(range(variables), degree)
-    monomials = [m for m in candidates if all(sum(w[j] for j in m) == 0 for w in weights)]
+
+    def is_fixed(monomial: Monomial) -> bool:
+        in_time()
+        return all(sum(w[j] for j in monomial) == 0 for w in weights)
+
+    monomials = [*filter(is_fixed, combinations_with_replacement(range(variables), degree))]
     equations = _equations([image for image in images if not _is_diagonal(image)], monomials)
     basis = [terms for block in _blocks(len(monomials), equations) for terms in _kernel(*block)]
     return [_primitive({monomials[i]: c for i, c in terms.items()}) for terms in basis]
@@ -650,6 +654,7 @@ def _blocks(count: int, equations: list[dict[int, int]]) -> list[tuple[list[int]
         return x
 
     for equation in equations:
+        in_time()
         first, *others = equation
         for x in others:
             parent[root(x)] = root(first)
@@ -666,10 +671,14 @@ def _kernel(unknowns: list[int], equations: list[dict[int, int]]) -> list[dict[i
     n = len(unknowns)
     within("memory", 16 * n * len(equations), f"{len(equations)} equations for {n} coefficients need {{}} bytes")
 
+    def entries_modulo(p: int) -> Iterator[int]:
+        for x in unknowns:
+            in_time()
+            yield from (row.get(x, 0) % p for row in equations)
+
     def modular(attempt: int) -> flint.nmod_mat:
         p = QQ.residue(attempt)[0]
-        entries = (row.get(x, 0) % p for x in unknowns for row in equations)
-        return row_basis(null_rows(residue_matrix(n, len(equations), entries, p)))
+        return row_basis(null_rows(residue_matrix(n, len(equations), entries_modulo(p), p)))
 
     for proposal in rational_lifts(modular, QQ):
         entries = [int(x) for x in proposal.parts[0].entries()]
@@ -697,6 +706,7 @@ def _equations(images: list[list[list[tuple[int, int]]]], monomials: list[Monomi
     rows: dict[tuple[int, Monomial], dict[int, int]] = {}
     for a, image in enumerate(images):
         for i, monomial in enumerate(monomials):
+            in_time()
             for t, j in enumerate(monomial):
                 for k, c in image[j]:
                     row = rows.setdefault((a, tuple(sorted((*monomial[:t], k, *monomial[t + 1 :])))), {})

@@ -41,8 +41,8 @@ SLACK = 1e-9  # a step that ends this close to the end of the integration, in un
 
 
 def clock_at(local: LocalStep, h: Lanes) -> tuple[Lanes, Lanes]:
-    """Whether the clock is admissible over [0, h], bool (...,), and the time τ(h), both for h of shape (...,)."""
-    return (is_admissible(local.clock, h), local.time(h)) if local.clock else (np.ones(np.shape(h), dtype=bool), h)
+    """Whether a clock is admissible over [0, h], bool (...,), and the time τ(h), both for h of shape (...,)."""
+    return is_admissible(local.clock, h), local.time(h)
 
 
 def is_admissible(clock: Sequence[tuple[int, Values]], h: Lanes) -> BooleanArray:

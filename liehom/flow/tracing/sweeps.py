@@ -315,7 +315,7 @@ def _entries(x: Expr, values: Mapping[int, JaxArray]) -> Any:
     places, factors = table.padded()
     some = x.args[:first], x.args[first:]
     lists = [_array(part, values) for part, _ in zip(some, places, strict=False)]
-    if len(lists) == 1 and bool((places[0] == np.arange(first)).all()):
+    if len(lists) == 1 and np.array_equal(places[0], np.broadcast_to(np.arange(first), (table.rows, first))):
         return jnp.tensordot(factors, lists[0], 1)
     axes = max(a.ndim for a in lists) - 1
     total: Any = factors.reshape(*factors.shape, *[1] * axes)

@@ -150,6 +150,13 @@ def test_limit_of_time_is_an_error() -> None:
         metrics.einstein()
 
 
+def test_two_parameters_without_a_definite_metric_prove_nothing() -> None:
+    sheets = lh.Pair(lh.catalog.algebra("sl(2)+sl(2)"), [[0, 0, 1, 0, 0, 0], [0, 0, 0, 0, 0, 1]])
+    found = sheets.invariant_metrics().einstein()
+    assert len(found) == 0 and not found.complete
+    assert lh.Pair(lh.sl(2), [[0, 0, 1]]).invariant_metrics().einstein().complete
+
+
 def test_no_einstein_metric_on_the_heisenberg_group() -> None:
     found = lh.Pair(lh.heisenberg(1), []).invariant_metrics().einstein()
     assert len(found) == 0

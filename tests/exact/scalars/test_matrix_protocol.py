@@ -110,3 +110,7 @@ def test_structure_constants_from_a_list_of_matrices() -> None:
     g = lh.so(3)
     blocks = [lh.QQ.matrix([g.bracket(x, y) for y in g.field.identity(3)]) for x in g.field.identity(3)]
     assert lh.LieAlgebra(blocks) == g
+
+
+def test_a_matrix_is_not_equal_to_other_things() -> None:
+    assert (lh.QQ.identity(1) == "1") is False and (lh.QQ.identity(1) != "1") is True

@@ -175,3 +175,15 @@ def test_ensembles_of_any_size_and_runs_that_fail_have_events(count: int) -> Non
     assert made.message == plain.message and made.t.shape == plain.t.shape
     for x, y in zip(listed(made.t_events), listed(plain.t_events), strict=True):
         np.testing.assert_allclose(x, y, rtol=0, atol=ULPS * EPS)
+
+
+@pytest.mark.filterwarnings("ignore:status -1")
+@pytest.mark.parametrize("count", [1, 3])
+def test_runs_whose_first_step_fails_have_no_events(count: int) -> None:
+    def psi(m: Any, t: Any) -> Any:
+        return np.stack([np.sqrt(0.01 - t) + 0 * m[..., 0], m[..., 0], m[..., 1]], axis=-1)
+
+    field = lh.GeneratorField(lh.adjoint(lh.so(3)), psi)
+    plain, made = both(field, (0, 1), sphere(count), step=lh.RKMK("rk4"), dt=0.1, events=FIRST)
+    assert (made.status, made.message) == (plain.status, plain.message) == (-1, made.message)
+    assert not any(map(len, listed(made.t_events)))

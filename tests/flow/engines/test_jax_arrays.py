@@ -8,6 +8,7 @@ import pytest
 
 import liehom as lh
 from liehom.base.errors import InputError
+from liehom.flow.series.jet import Jet
 
 jax = pytest.importorskip("jax")
 jnp = jax.numpy
@@ -121,3 +122,14 @@ def test_code_is_compiled_once_whatever_numbers_psi_closes_over() -> None:
     plain = lh.integrate(doubled, (0, 1), STARTS[0], step=lh.RKMK("rk4"), dt=0.1, engine="numpy")
     assert np.abs(first - second).max() > 1e-3
     np.testing.assert_allclose(second, plain.y[:, -1], rtol=0, atol=64 * EPS)
+
+
+def test_series_of_a_psi_that_is_written_with_functions_of_jax_are_those_of_numpy() -> None:
+    def psi_of(xp: Any) -> Any:
+        return lambda m: xp.stack([m[..., 0] ** 2, xp.sin(m[..., 1]), xp.exp(m[..., 2])], axis=-1)
+
+    plain, made = (lh.GeneratorField(lh.adjoint(lh.so(3)), psi_of(xp)) for xp in (np, jnp))
+    terms = np.random.default_rng(2).normal(size=(4, 3))
+    with jax.enable_x64(True):
+        found = made.psi(Jet(jnp.asarray(terms))).coefficients
+    np.testing.assert_allclose(np.asarray(found), plain.psi(Jet(terms)).coefficients, rtol=0, atol=1e-12)

@@ -122,6 +122,14 @@ def test_points_on_smaller_orbits_are_looked_at_closely() -> None:
     assert engine.solved == 2
 
 
+def test_only_spheres_are_checked_as_spheres() -> None:
+    """An orbit of the motions of the plane has codimension 1, too, and translations are on circles."""
+    field = lh.GeneratorField(lh.adjoint(lh.euclidean(2)), lambda m: m[..., [1, 2, 0]])
+    made, engine = propagator(field, lh.RKMK("rk4"))
+    assert made(SPAN, np.array([1.0, 0.5, 0.7]), dt=0.1).report.orbit_dimension == 2
+    assert made(SPAN, np.array([0.0, 0.5, 0.7]), dt=0.1).report.orbit_dimension == 1 and engine.solved == 2
+
+
 RHO4 = lh.sym_conjugation(4)
 LINEAR4 = 0.2 * np.random.default_rng(83).normal(size=(RHO4.algebra.dimension, RHO4.size))
 

@@ -10,7 +10,7 @@ from scipy.integrate import solve_ivp
 
 import liehom as lh
 from liehom.base.errors import InputError
-from liehom.flow.run.check import LOOKS, MAX_WAY, widest_gap
+from liehom.flow.run.check import LOOKS, MAX_WAY, OFFSET, widest_gap
 
 START = np.array([0.36, 0.48, 0.8])
 RHO = lh.adjoint(lh.so(3))
@@ -127,6 +127,8 @@ def test_a_pair_asks_psi_as_often_as_a_series() -> None:
         local = named.at(lh.Action(RHO), lh.steps.Generator(still, 2), START, np.zeros(1))
         times = lh.integrate(still, (0, 30), START, step=step).t
         assert np.diff(times).max() == pytest.approx(MAX_WAY / local.widest_gap / 0.6)
+        times = lh.integrate(along(lambda t: 0.0 * t), (0, 30), START, step=step).t
+        assert np.diff(times).max() == pytest.approx(30 / (LOOKS + OFFSET) / local.widest_gap)
 
 
 @pytest.mark.parametrize("engine", ["llvm", "jax"])

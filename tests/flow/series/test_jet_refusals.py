@@ -2,6 +2,7 @@
 
 import cmath
 import math
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,9 @@ import scipy.linalg
 import scipy.sparse
 import scipy.special
 
-from liehom.base.errors import SeriesError, ShapeError
+import liehom as lh
+from liehom.base.errors import FieldError, SeriesError, ShapeError
+from liehom.flow.series.arrays import power
 from liehom.flow.series.jet import Jet, as_jet, on_series
 
 
@@ -222,3 +225,10 @@ def test_entries_of_several_shapes_are_refused() -> None:
     assert as_jet([x[:, 0], 1.0]).shape == (2, 5)
     assert as_jet([1.0, 2.0], 4).order == 4
     assert as_jet(x) is x
+
+
+def test_roots_that_exact_numbers_may_not_have_are_refused() -> None:
+    x = np.array([lh.QQ.convert("4/9"), lh.QQ.one], dtype=object)
+    assert power(x, Fraction(3, 2)).tolist() == [lh.QQ.convert("8/27"), 1]
+    with pytest.raises(FieldError, match="use floats"):
+        power(x, Fraction(1, 3))

@@ -288,6 +288,13 @@ def test_the_callable_of_a_step_that_needs_nothing() -> None:
     assert formula.function()(on_sphere(3, 2), a=1.0).tolist() == [[0.0] * 3] * 2
 
 
+def test_the_text_has_the_factor_of_the_isotropy_element() -> None:
+    formula = body("o", lh.Euler(), 2)
+    lines = str(formula).splitlines()
+    assert lines[0].startswith("Euler() corrected to order 2") and lines[-1].startswith("  where ")
+    assert lines[1] == f"  zeta_1 = ({formula.factor[1]}) * {formula.isotropy}"
+
+
 @pytest.mark.parametrize("name", FIVE)
 def test_latex(name: str) -> None:
     kind, step, order, _ = FIVE[name]

@@ -29,6 +29,7 @@ PSIS: dict[str, Callable[..., Any]] = {
     "einsum": lambda m: np.einsum("...i,aij,...j->...a", m, FORM, m) + np.einsum("...i,ai->...a", m, WEIGHTS),
     "elementary functions": lambda m: np.sin(m @ LINEAR) * np.exp(-CONSTANT * 0.1) + np.sqrt(2.0 + np.cos(m @ LINEAR)),
     "sums and quotients": lambda m: (m @ LINEAR) / (2.0 + np.sum(m * m * m, axis=-1, keepdims=True)) / 3.0,
+    "sums of functions": lambda m: np.sin(m[..., None] * LINEAR).sum(axis=-2),
     "of parts": lambda m: np.concatenate([m @ LINEAR[:, :10], (m[..., ::-1] ** 2) @ LINEAR[:, 10:]], axis=-1),
     "of time": lambda m, t: CONSTANT * np.cos(t)[..., None] + m @ LINEAR,
 }
@@ -69,7 +70,7 @@ def test_calls_on_spheres_are_made_again_by_a_plan(monkeypatch: pytest.MonkeyPat
     assert all(engine.again((0.0, 1.0), x * _points(1)[0], {"dt": 0.1}) is None for x in (0.0, np.nan, np.inf))
 
 
-@pytest.mark.parametrize("name", ["elementary functions", "einsum"])
+@pytest.mark.parametrize("name", ["elementary functions", "einsum", "sums of functions"])
 def test_jax_computes_with_arrays_in_place_of_loops(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("jax")
     monkeypatch.setitem(jax_loops.JaxKernel.tracing, "unrolled", 1)

@@ -292,6 +292,12 @@ def test_tables_in_latex_compile_as_text() -> None:
     assert r"$2.5\cdot10^{-7}$ & 10 \% \\" in text
 
 
+def test_cells_in_json_are_numbers_and_texts() -> None:
+    cells = [None, float("nan"), "x_1", 3, np.float64(0.25)]
+    rows = Table("a", ("k", "v"), [(i, x) for i, x in enumerate(cells)]).to_json()["rows"]
+    assert [row[1] for row in rows] == [None, None, "x_1", 3, 0.25]
+
+
 def test_a_figure_is_found_again_only_if_it_is_complete_and_the_same(tmp_path: Path) -> None:
     done = small("fig2")
     paths = done.write(tmp_path, ("svg",))

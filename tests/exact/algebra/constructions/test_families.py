@@ -360,3 +360,8 @@ def test_catalogue_name_with_invalid_parameters_raises_catalog_error(name: str) 
 def test_catalogue_name_with_large_parameters_raises_limit_error(name: str) -> None:
     with pytest.raises(LimitError, match="dimension"):
         lh.catalog.algebra(name)
+
+
+def test_rotations_of_two_vectors_are_not_made_where_they_have_no_room() -> None:
+    with lh.limits(memory=200_000), pytest.raises(LimitError, match="66 dense matrices of size 25"):
+        lh.algebra.galilei(12)

@@ -10,7 +10,11 @@ from liehom.base.errors import LimitError, NoRationalInvolutionError, UndecidedE
 from liehom.base.typing import IntegerArray
 from liehom.exact.algebra.involutions.cartan_decomposition import cartan_decomposition, is_cartan_involution
 from liehom.exact.algebra.involutions.cartan_involution import approximate_involution
-from liehom.exact.algebra.involutions.field_involutions import elliptic_elements, elliptic_involution
+from liehom.exact.algebra.involutions.field_involutions import (
+    _has_nilpotent,
+    elliptic_elements,
+    elliptic_involution,
+)
 from liehom.exact.algebra.involutions.rational_involution import lattice_order
 from liehom.exact.algebra.structure.ideals import over_extension
 from tests.exact.algebra.involutions.test_cartan_decomposition import (
@@ -186,6 +190,16 @@ def test_an_order_leaves_a_parahoric_subalgebra_at_every_prime(prime: int) -> No
     order = natural.change_of_basis(lattice_order(natural, np.eye(8)))
     assert int(natural.killing_form().determinant()) % prime**4 == 0
     assert int(order.killing_form().determinant()) % prime != 0
+
+
+@pytest.mark.parametrize(("degree", "taps"), [(14, (5, 0)), (15, (1, 0))])
+def test_combinations_of_a_field_with_two_to_the_15_elements_are_too_many_to_try(
+    degree: int, taps: tuple[int, ...]
+) -> None:
+    root = np.eye(degree, k=-1, dtype=np.int64)
+    root[list(taps), -1] = 1
+    powers = np.array([np.linalg.matrix_power(root, k) for k in range(degree)]) % 2
+    assert _has_nilpotent(powers, 2) is (degree == 15)
 
 
 def test_the_search_stops_in_time() -> None:

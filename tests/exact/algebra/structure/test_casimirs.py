@@ -1,6 +1,8 @@
 """Casimir operators: annihilated by all derivations, as many as known; to dimension 5 against a search by sympy."""
 
 import itertools
+import random
+import time
 from functools import cache
 
 import pytest
@@ -8,9 +10,12 @@ import sympy
 from sympy.polys.matrices import DomainMatrix
 
 import liehom as lh
-from liehom.base.errors import InputError, UndecidedError
+from liehom.base.errors import InputError, LimitError, UndecidedError
 from liehom.exact.algebra.constructions.low_dimensional import Row, rows
 from liehom.exact.algebra.core.lie_algebra import LieAlgebra
+from liehom.exact.scalars.exact_field import as_exact
+from liehom.exact.scalars.polynomial_matrix import invariant_polynomials
+from liehom.testing import random_unimodular
 
 A = lh.algebra
 # degrees of the invariants that Beltrametti and Blasi's number counts; of sl(n) and so(n) they are the degrees of the
@@ -133,3 +138,12 @@ def test_refusals() -> None:
     with pytest.raises(UndecidedError, match="at most 3"):
         lh.euclidean(5).index()
     assert lh.euclidean(5).casimirs(4).number == 3
+
+
+def test_seconds_end_a_search_of_many_monomials() -> None:
+    g = lh.so(7).change_of_basis(random_unimodular(21, random.Random(7), 21))
+    actions = [as_exact(g.ad(row)).T for row in g.field.identity(21).to_rows()[:2]]
+    start = time.process_time()
+    with lh.limits(seconds=0.2), pytest.raises(LimitError, match="seconds"):
+        invariant_polynomials(actions, 21, 4)
+    assert time.process_time() - start < 2

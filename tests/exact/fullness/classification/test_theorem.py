@@ -181,3 +181,9 @@ def test_the_concordance_gives_each_source_the_rows_of_its_scope() -> None:
         assert (two_transitive != "–") == (parabolic or affine), name
         small = name in {"0/0", "R/0", "aff(1)/R"}
         assert (isotropic == "list") == (inner in compact or not (inner or parabolic or small)), name
+
+
+def test_names_of_compact_rows_are_pairs_of_their_dimension() -> None:
+    for d in (6, 7, 8):
+        named = [row for row in library_rows(d) if row.key.letter == "C"]
+        assert [lh.pair(row.name).dimension for row in named] == [d] * len(named)

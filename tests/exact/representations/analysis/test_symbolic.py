@@ -10,6 +10,7 @@ from hypothesis import given, settings, strategies as st
 
 import liehom as lh
 from liehom.base.errors import InputError, ParseError
+from liehom.exact.representations.analysis.symbolic import _cleared
 from liehom.exact.representations.core.representation import Representation
 from tests.sampling import examples
 
@@ -178,3 +179,7 @@ def test_strings_that_are_not_rational_functions_are_refused(string: str, error:
 def test_results_are_pickled() -> None:
     generic = lh.defining("so(3)").symbolic_isotropy([X, Y, 0])
     assert pickle.loads(pickle.dumps(generic)) == generic
+
+
+def test_rows_are_polynomials_without_a_common_divisor() -> None:
+    assert _cleared([2 * X * (Y + 1) / Z, 4 * X * Y / Z**2]) == [Y * Z + Z, 2 * Y]
