@@ -3,7 +3,8 @@
     (k + 1) x_(k+1) = sum_(0 < l < k) rho(psi'(x_l)) x_(k-l) + J x_k,   J the derivative of the field at x_0.
 
 The newest coefficient comes last, by one matrix, so that the rest is computed meanwhile. The sum is computed as it is
-written, or from the products of two coordinates, of which each is expanded once.
+written, or from the products of two coordinates, of which each is expanded once. On CP^2 there are 64 products, and by
+them a step takes 1.5 to 1.8 times as long as by the sum with as many operations.
 """
 
 from __future__ import annotations
@@ -16,6 +17,8 @@ from typing import Any, TypeAlias, final
 from liehom.base.typing import Values
 from liehom.flow.tracing.array import Traced
 from liehom.flow.tracing.graph import Expr, needed
+
+REGISTERS = 32  # products of coordinates up to which code by products keeps them all in vector registers
 
 Quadratic: TypeAlias = dict[tuple[int, ...], Expr]
 """A polynomial of degree 2 at most: a coefficient for each product of coordinates, () for 1."""
@@ -51,7 +54,7 @@ def affine_flow(m: Traced, psi: Traced, move: Callable[[Any, Any], Values], orde
     by_products += orders * sum(len(e) == 2 for row in rows for e in row)
     as_written = pairs * moved + orders * sum(len(e) == 1 for row in affine for e in row)
     x = [list(m.entries)]
-    if by_products <= as_written:
+    if len(products) <= REGISTERS and by_products <= as_written:
         return AffineFlow(_points(x, rows, order, partial(_by_products, x, rows, products)), affine)
     return AffineFlow(_points(x, rows, order, partial(_as_written, x, affine, move)), affine)
 

@@ -64,6 +64,8 @@ def test_the_body_needs_half_of_the_products() -> None:
 @pytest.mark.parametrize("order", [8, 10, 16, 20])
 @pytest.mark.parametrize("name", ["body", "S^3", "coadjoint SE(3)", "adjoint SU(3)"])
 def test_the_shorter_form_is_taken(name: str, order: int) -> None:
+    """On SU(3) the products do not fit into registers, and the sum is taken as it is written."""
+
     def operations(points: Any) -> int:
         return sum(bool(x.args) for x in needed([e for row in points for e in row]))
 
@@ -81,7 +83,7 @@ def test_the_shorter_form_is_taken(name: str, order: int) -> None:
         x = [list(m.entries)]
         counts.append(operations(_points(x, rows, order, partial(form, x, *given))))  # type: ignore[arg-type]
     taken = operations([flow.point(k).entries for k in range(order + 1)])
-    assert taken in counts and taken <= 1.02 * min(counts)
+    assert taken == counts[1] if name == "adjoint SU(3)" else taken in counts and taken <= 1.02 * min(counts)
 
 
 def test_numbers_of_args_are_coefficients() -> None:
