@@ -296,8 +296,8 @@ class Plan:
             self.is_judged = True  # an ordinary call says whether the field is stiff
             return None
         if self.events is not None:
-            steps = path.reshape(n + 2, self.lanes, -1).transpose(2, 0, 1)
-            if (log := self.events(steps, {**values, "direction": direction}, (begin, end))) is None:
+            values = {**values, "length": abs(end - begin), "direction": direction}
+            if (log := self.events(path, values)) is None:
                 return None
         if stops is not None:
             times = stops[0].copy()
