@@ -294,7 +294,7 @@ class PointCode:
             raise TraceError("numbers of a trajectory are not compiled for events")
         self.constants: Array = np.zeros(max(1, len(self.kernel.run_constants)))
         self.alive: int = self.kernel.names.index("alive")
-        self.lanes = 0  # there is memory for them
+        self.lanes = 0  # for which there is memory
 
     def run(
         self, given: Array | Sequence[Array], values: Mapping[str, float], start: Array | None = None
@@ -302,7 +302,7 @@ class PointCode:
         """Make numbers from others, each (L,), constants of the run, and initial points (N, L)."""
         lanes, rows, width = len(given[0]), len(given), self.kernel.width
         if self.lanes < lanes:
-            self.lanes: int = padded(2 * lanes, width)
+            self.lanes = padded(2 * lanes, width)
             self.memory = memory = Memory(self.kernel, self.lanes, self.constants)
             memory.integers[PLACES["end"]] = memory.integers[PLACES["total"]] = 1
             memory.floats[PLACES["step_size"]] = 1.0
@@ -339,16 +339,18 @@ def _of_coordinates(n: int, function: TrajectoryConstant) -> TrajectoryConstant:
 
 def events_key(functions: object) -> Hashable:
     """A key that event functions share if they are made at one place from the same values."""
-    if isinstance(functions, list | tuple):
+    if isinstance(functions, FunctionType):
+        place = id(functions.__code__), id(functions.__globals__)
+        if not (functions.__dict__ or functions.__closure__ or functions.__defaults__ or functions.__kwdefaults__):
+            return place
+    elif isinstance(functions, list | tuple):
         return tuple(map(events_key, functions))
     marks = repr(getattr(functions, "direction", None)), repr(getattr(functions, "terminal", None))
     if isinstance(functions, FunctionType):
-        try:
+        with suppress(ValueError):  # of a cell that is not assigned yet
             cells = [cell.cell_contents for cell in functions.__closure__ or ()]
             inner = [*cells, *(functions.__defaults__ or ()), *(functions.__kwdefaults__ or {}).values()]
-            return functions.__code__, id(functions.__globals__), *map(id, inner), *marks
-        except ValueError:  # a cell that is not assigned yet
-            pass
+            return *place, *map(id, inner), *marks
     return id(functions), *marks
 
 

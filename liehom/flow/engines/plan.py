@@ -19,7 +19,7 @@ from liehom.base.typing import Array, IntegerArray, Pytree
 from liehom.flow.action.field import check_point
 from liehom.flow.action.space import Action
 from liehom.flow.engines.arguments import with_tight_frame
-from liehom.flow.engines.compiled_events import PlannedEvents, events_key
+from liehom.flow.engines.compiled_events import PlannedEvents
 from liehom.flow.engines.engine import Problem
 from liehom.flow.engines.lanes import (
     LANE_STEPS_FOR_THREADS,
@@ -46,7 +46,7 @@ from liehom.flow.tracing.machine import PLACES, Kernel, padded
 # same call. Whatever is unusual, or not right, has no such form: `Propagator` looks at it closely.
 
 KINDS = frozenset([float, int, np.float64, np.float32, np.int64, np.int32])
-EPS = float(np.finfo(np.float64).eps)
+ROUND_OFF = 8 * float(np.finfo(np.float64).eps)
 FLOAT = np.dtype(np.float64)
 
 
@@ -124,11 +124,11 @@ def _stops_of(times: Array, begin: float, end: float) -> tuple[Array, int, int] 
 
 
 def form_of(
-    shape: tuple[int, ...], numbers: Numbers, t_eval: object, events: object, args: Sequence[Leaf] | None
+    shape: tuple[int, ...], numbers: Numbers, t_eval: object, events: Hashable, args: Sequence[Leaf] | None
 ) -> Hashable:  # fmt: skip
-    """The form of a call, with the leaves of its args: calls of one form have one plan."""
+    """The form of a call, with the key of its events and the leaves of its args: calls of one form have one plan."""
     form = None if args is None else tuple([_form_of_leaf(*leaf) for leaf in args])
-    return shape, numbers.form, t_eval is None, form, None if events is None else events_key(events)
+    return shape, numbers.form, t_eval is None, form, events
 
 
 def _form_of_leaf(path: str, x: object) -> Hashable:
@@ -192,7 +192,7 @@ ROOM = 64  # rows of the path, at first, of steps whose number is not known
 LAST_STOP, FIRST_STOP, ORIGIN, BEGIN, END_STEP, TOTAL, STEP_SIZE = (
     PLACES[name] for name in ("last_stop", "first_stop", "origin", "begin", "end", "total", "step_size")
 )
-OF_A_CALL = ("rest", "end", "direction", "tiny", "latest", "rtol", "atol", "max_step", "gap")
+OF_A_CALL = ("rest", "end", "direction", "tiny", "latest", "gap")
 """The numbers of a call that a kernel may take, besides args."""
 NO_VALUES: Mapping[str, Any] = {}
 TROUBLE = frozenset(["unkept", "failed", "near", "short", "conservation_short", "conservation_missed"])
@@ -230,6 +230,8 @@ class Plan:
         self.slots = self.constants.data.cast("B").cast("d")
         self.slot = {name: i for i, name in enumerate(kernel.run_constants)}
         self.own = [(i, OF_A_CALL.index(name)) for name, i in self.slot.items() if name in OF_A_CALL]
+        self.bounds = [(i, name) for name, i in self.slot.items() if name in BOUNDS]
+        self.numbers: Numbers | None = None  # from which the bounds in the memory are
         self.constants[[i for name, i in self.slot.items() if name == "checks"]] = 1.0
         names = () if problem.args is None else arg_values(problem.args, len(self.shape))
         self.names = [(name, self.slot.get(name)) for name in names]
@@ -257,7 +259,7 @@ class Plan:
         args: Pytree, found: Sequence[Leaf] | None,
     ) -> Solution | None:  # fmt: skip
         """The solution, or None if the call needs a closer look."""
-        length, size, rest, total = abs(end - begin), numbers.dt, 8 * EPS * max(begin, end, -begin, -end), 0
+        length, size, rest, total = abs(end - begin), numbers.dt, ROUND_OFF * max(abs(begin), abs(end)), 0
         direction = 1.0 if end > begin else -1.0
         if not 0.0 < length < inf or (numbers.shape and numbers.shape != self.shape):
             return None
@@ -267,12 +269,13 @@ class Plan:
             if rest > (size if type(size) is float else np.min(size)):
                 return None
             if self.lockstep:
-                total = max(ceil(length / size - (SLACK + rest / size)), 1)
+                total = ceil(length / size - (SLACK + rest / size))
+                total = total if total > 1 else 1
                 if total >= numbers.max_steps:
                     return None
             size = direction * size
         stops = None if times is None else _stops_of(times, begin, end)
-        if (times is not None and stops is None) or not self.is_current:
+        if (times is not None and stops is None) or (self.events is not None and not self.is_current):
             return None
         try:
             memory = self.free.pop()
@@ -318,12 +321,13 @@ class Plan:
             self.stops[0] = self.stops[1] = end
         else:
             self._put(stops, memory, end)
-        integers[BEGIN], memory.floats[ORIGIN] = 0, begin
+        memory.floats[ORIGIN] = begin
         if total:
             integers[END_STEP] = integers[TOTAL] = total
             memory.floats[STEP_SIZE] = size
         else:
-            integers[END_STEP], cells[self.time], cells[self.size] = self.rows if self.keeps else self.most, begin, size
+            integers[BEGIN], integers[END_STEP] = 0, self.rows if self.keeps else self.most
+            cells[self.time], cells[self.size] = begin, size
         if self.keeps:
             path = memory.path(total or self.rows, n + 2)
             if path is not self.path:
@@ -436,10 +440,13 @@ class Plan:
         self, numbers: Numbers, begin: float, end: float, rest: float, direction: float, found: Sequence[Leaf] | None
     ) -> Mapping[str, Any]:
         """Take over the numbers of a call as constants of the run; returns those of args by name."""
-        dt, rtol, atol, most, least, _, _, looks, *_ = numbers
-        tiny, latest = rest if dt is not None or rest > least else least, abs(begin) + abs(end) + 1.0  # see bounds_of
-        gap = (gap_of(looks, end - begin, self.problem.field) if "gap" in self.slot else None) or 0.0
-        known: Any = rest, end, direction, tiny, latest, rtol, atol, most, gap
+        if numbers is not self.numbers:
+            self.numbers = numbers
+            for place, name in self.bounds:
+                self.slots[place] = getattr(numbers, name)
+        tiny = rest if numbers.dt is not None or rest > numbers.min_step else numbers.min_step
+        gap = gap_of(numbers.looks, end - begin, self.problem.field) if "gap" in self.slot else None
+        known = rest, end, direction, tiny, abs(begin) + abs(end) + 1.0, gap or 0.0  # see bounds_of
         for place, i in self.own:
             self.slots[place] = known[i]
         if found is None:
