@@ -30,7 +30,6 @@ FAILURES = (LiehomError, TypeError, ValueError, IndexError, KeyError, Arithmetic
 """What functions raise that were not written for this number of points."""
 RTOL = 1e-9
 NEAR = 1e-3  # relative distance of trial points
-LAST = PLACES["last"]
 FEW = 16  # points on paths, up to which their signs are compared one by one
 
 
@@ -296,9 +295,7 @@ class PointCode:
         self.alive: int = self.kernel.names.index("alive")
         self.lanes = 0  # for which there is memory
 
-    def run(
-        self, given: Array | Sequence[Array], values: Mapping[str, float], start: Array | None = None
-    ) -> None:  # fmt: skip
+    def run(self, given: Array | Sequence[Array], values: Mapping[str, float], start: Array | None = None) -> None:
         """Make numbers from others, each (L,), constants of the run, and initial points (N, L)."""
         lanes, rows, width = len(given[0]), len(given), self.kernel.width
         if self.lanes < lanes:
@@ -317,7 +314,7 @@ class PointCode:
             memory.start[: len(start), :lanes] = start
         for i, name in enumerate(self.kernel.run_constants):
             self.constants[i] = values.get(name, 0.0)
-        memory.integers[LAST] = -(-lanes // width)
+        memory.integers[PLACES["last"]] = -(-lanes // width)
         self.kernel.run(memory.address)
 
     def made(self, lanes: int) -> Array:
@@ -329,7 +326,7 @@ class PointCode:
         """Whether each number has the same sign in all lanes, which are few."""
         cells, row = self.memory.cells, self.lanes
         starts = (self.alive * row, *range(0, self.count * row, row))
-        return all([cells[i] * x > 0 for i in starts for x in cells[i + 1 : i + lanes]])
+        return all([cells[i] * x > 0 for i in starts for x in cells[i + 1 : i + lanes]])  # noqa: C419 - quicker
 
 
 def _of_coordinates(n: int, function: TrajectoryConstant) -> TrajectoryConstant:

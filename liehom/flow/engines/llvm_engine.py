@@ -61,8 +61,8 @@ from liehom.flow.tracing.machine import Kernel
 COPIES_WITH_EVENTS = 8  # arrays of the size of the path, about, while events are sought
 MIN_STEPS_WITH_ENDS = 64  # with terminal events, steps in the first call; further calls double their number
 MAX_PLANS = 64  # number of plans that are kept
-NEVER: tuple[tuple[int, ...], Numbers | None, bool, Hashable, Plan | None] = (), None, True, None, None
-"""Of the latest call without args: shape, numbers, whether it had no output times, key of its events, and its plan."""
+NEVER: tuple[Hashable, Numbers | None, Plan | None] = None, None, None
+"""Of the latest call without args: its form but the numbers, these, and its plan."""
 
 
 @final
@@ -128,14 +128,12 @@ class LlvmEngine:
             if points is None or numbers is None:
                 return None
             found = None if args is None else leaves(args)
-            shape, known, is_free, same, plan = self._latest
-            if (
-                numbers is not known or (times is None) is not is_free or points.shape != shape or key != same
-                or args is not None
-            ):
-                plan = self._plans.get(form_of(points.shape, numbers, times, key, found))
+            form = points.shape, times is None, key
+            same, known, plan = self._latest
+            if numbers is not known or form != same or args is not None:
+                plan = self._plans.get(form_of(form, numbers, found))
                 if args is None:
-                    self._latest = points.shape, numbers, times is None, key, plan
+                    self._latest = form, numbers, plan
             if plan is None or self._watch.changed():  # type: ignore[union-attr]
                 return None
             return plan(numbers, points, begin, end, times, args, found)
@@ -149,8 +147,8 @@ class LlvmEngine:
             return
         start, args = np.asarray(problem.start), problem.args
         numbers: Any = numbers_of.__wrapped__(dt=o.dt, looks=o.looks, dense_output=o.dense_output)
-        key = None if o.events is None else events_key(o.events)
-        form = form_of(start.shape, numbers, o.t_eval, key, None if args is None else leaves(args))
+        own = start.shape, o.t_eval is None, None if o.events is None else events_key(o.events)
+        form = form_of(own, numbers, None if args is None else leaves(args))
         dimension = int(np.max(problem.orbit_dimension))
         known = self._plans.get(form)
         if (known is not None and known.is_current) or not serves_all_points(problem, run.step, dimension):

@@ -123,12 +123,9 @@ def _stops_of(times: Array, begin: float, end: float) -> tuple[Array, int, int] 
     return times, int(first == begin), len(times) - int(last == end)
 
 
-def form_of(
-    shape: tuple[int, ...], numbers: Numbers, t_eval: object, events: Hashable, args: Sequence[Leaf] | None
-) -> Hashable:  # fmt: skip
-    """The form of a call, with the key of its events and the leaves of its args: calls of one form have one plan."""
-    form = None if args is None else tuple([_form_of_leaf(*leaf) for leaf in args])
-    return shape, numbers.form, t_eval is None, form, events
+def form_of(form: Hashable, numbers: Numbers, args: Sequence[Leaf] | None) -> Hashable:
+    """The form of a call, with the leaves of its args: calls of one form have one plan."""
+    return form, numbers.form, None if args is None else tuple([_form_of_leaf(*leaf) for leaf in args])
 
 
 def _form_of_leaf(path: str, x: object) -> Hashable:
@@ -269,8 +266,7 @@ class Plan:
             if rest > (size if type(size) is float else np.min(size)):
                 return None
             if self.lockstep:
-                total = ceil(length / size - (SLACK + rest / size))
-                total = total if total > 1 else 1
+                total = ceil(length / size - (SLACK + rest / size)) or 1
                 if total >= numbers.max_steps:
                     return None
             size = direction * size
@@ -331,8 +327,8 @@ class Plan:
         if self.keeps:
             path = memory.path(total or self.rows, n + 2)
             if path is not self.path:
-                self.path, self.columns, self.row = path, path[:, :, 0].T, memory.views["path"]
-            self.row[:n], self.row[n] = point, begin
+                self.path, self.head, self.columns = path, memory.views["path"][: n + 1], path[:0, :, 0].T
+            self.head[:n], self.head[n] = point, begin
         self.kernel.run(memory.address)
         left, most = cells[self.alive], total or int(cells[self.taken])
         if left <= 0 if total else left >= 0 or most >= numbers.max_steps:
@@ -343,7 +339,9 @@ class Plan:
         cells[self.taken] = most
         if path is not None:
             rows = total or integers[BEGIN]
-            path = self.columns[:, : rows + 1].copy()
+            if self.columns.shape[1] != rows + 1:
+                self.columns = self.path[: rows + 1, :, 0].T
+            path = self.columns.copy()
             if rows > most:  # some rows are not steps
                 path[n + 1, 0] = 1.0
                 path = path[:, path[n + 1] != 0]
@@ -490,12 +488,8 @@ class Plan:
         self, task: Task, args: Pytree, state: Array | bytes, path: Array, start: Array | None, log: EventLog | None
     ) -> dict[str, object]:
         """The other entries of a solution, which are made when one of them is asked for."""
-        p, shape, graph, (given, _, stops, *span, _, direction, _, _) = (
-            self.problem,
-            self.shape,
-            self.kernel.graph,
-            task,
-        )
+        p, shape, graph = self.problem, self.shape, self.kernel.graph
+        given, _, stops, *span, _, direction, _, _ = task
         bound = p.field if args is None else p.field.with_args(args)
         p = replace(p, bound=bound, span=(np.float64(span[0]), np.float64(span[1])))
         rows = np.frombuffer(state, count=len(self.kept))[:, None] if isinstance(state, bytes) else state
