@@ -322,12 +322,6 @@ class PointCode:
         state = self.memory.state
         return np.where(state[self.alive, :lanes] > 0, state[: self.count, :lanes], np.nan)
 
-    def have_one_sign(self, lanes: int) -> bool:
-        """Whether each number has the same sign in all lanes, which are few."""
-        cells, row = self.memory.cells, self.lanes
-        starts = (self.alive * row, *range(0, self.count * row, row))
-        return all([cells[i] * x > 0 for i in starts for x in cells[i + 1 : i + lanes]])  # noqa: C419 - quicker
-
 
 def _of_coordinates(n: int, function: TrajectoryConstant) -> TrajectoryConstant:
     """A constant of a trajectory as a function of more numbers than the coordinates of its initial point."""
@@ -420,14 +414,15 @@ class PlannedEvents:
     def __call__(self, path: Array, values: Mapping[str, Any]) -> EventLog | None:
         """The events on paths (N + 2, ..., j + 1) of points, times and sizes. None if one may end a run."""
         events, n = self.events, self.n
-        places = path[: n + 1].reshape(n + 1, -1)
-        count = places.shape[1]
-        self.at_points.run(places, values)
-        if count <= FEW and self.at_points.have_one_sign(count):
-            return self.nothing
+        places, code = path[: n + 1].reshape(n + 1, -1), self.at_points
+        code.run(places, values)
+        count, cells, row = places.shape[1], code.memory.cells, code.lanes
+        starts = (code.alive * row, *range(0, code.count * row, row))
+        if count <= FEW and all([cells[i] * x > 0 for i in starts for x in cells[i + 1 : i + count]]):  # noqa: C419
+            return self.nothing  # no value and no slope changes its sign
         shape, path = path.shape[1:-1], path.reshape(n + 2, -1, path.shape[-1])
         log = EventLog(events.count, shape, n)
-        g, ahead, back = self.at_points.made(count).reshape(3, events.count, *path.shape[1:])
+        g, ahead, back = code.made(count).reshape(3, events.count, *path.shape[1:])
         occurrences: list[Occurrence] = []
         starts, ends = g[..., :-1], g[..., 1:]
         same = starts * ends > 0

@@ -151,7 +151,8 @@ class LlvmEngine:
         form = form_of(own, numbers, None if args is None else leaves(args))
         dimension = int(np.max(problem.orbit_dimension))
         known = self._plans.get(form)
-        if (known is not None and known.is_current) or not serves_all_points(problem, run.step, dimension):
+        is_current = known is not None and (known.events is None or not known.events.parts.changed())
+        if is_current or not serves_all_points(problem, run.step, dimension):
             return
         events = None if o.events is None else planned_events(problem, run.step, dimension, np.asarray(solution.y))
         if events is None and o.events is not None:

@@ -246,11 +246,6 @@ class Plan:
         row = max(8 * (self.n + 2) / PATH_BYTES_PER_CALL, work / OPERATIONS_PER_CALL, 1 / LANE_STEPS_FOR_THREADS)
         self.short = int(1 / (row * self.lanes))
 
-    @property
-    def is_current(self) -> bool:
-        """Whether the event functions are those that were compiled."""
-        return self.events is None or not self.events.parts.changed()
-
     def __call__(
         self, numbers: Numbers, points: Array, begin: float, end: float, times: Array | None,
         args: Pytree, found: Sequence[Leaf] | None,
@@ -271,7 +266,7 @@ class Plan:
                     return None
             size = direction * size
         stops = None if times is None else _stops_of(times, begin, end)
-        if (times is not None and stops is None) or (self.events is not None and not self.is_current):
+        if (times is not None and stops is None) or (self.events is not None and self.events.parts.changed()):
             return None
         try:
             memory = self.free.pop()
@@ -298,10 +293,8 @@ class Plan:
             values = {**values, "length": abs(end - begin), "direction": direction}
             if (log := self.events(path, values)) is None:
                 return None
-        if stops is not None:
-            times = stops[0].copy()
-        else:
-            times, y = path[n], path[:n].transpose(self.axes) if self.shape else path[:n]
+        times = path[n] if stops is None else stops[0].copy()
+        y = (path[:n].transpose(self.axes) if self.shape else path[:n]) if stops is None else y
         if self.ranked is not None:  # what the other entries need is copied: points may change
             start = points.reshape(self.lanes, n).copy()
         return solution_of(times, y, END, partial(self._others, task, args, state, path, start, log))
@@ -331,11 +324,9 @@ class Plan:
             self.head[:n], self.head[n] = point, begin
         self.kernel.run(memory.address)
         left, most = cells[self.alive], total or int(cells[self.taken])
-        if left <= 0 if total else left >= 0 or most >= numbers.max_steps:
+        failed = left <= 0 if total else left >= 0 or most >= numbers.max_steps
+        if failed or (self.trouble and any([cells[i] > 0 for i in self.trouble])):  # noqa: C419 - quicker
             return None
-        for i in self.trouble:
-            if cells[i] > 0:
-                return None
         cells[self.taken] = most
         if path is not None:
             rows = total or integers[BEGIN]
@@ -381,10 +372,9 @@ class Plan:
             row[:count] = values[number.name][lanes] if isinstance(number, LaneConstant) else number(points)
         memory.cells[:] = memory.fresh
         memory.points[:] = points
-        if not total and isinstance(size, float):
-            state[self.time], state[self.size] = begin, size
-        elif not total:
-            state[self.time], state[self.size, :count] = begin, size.reshape(-1)[lanes]
+        if not total:
+            own = size if isinstance(size, float) else size.reshape(-1)[lanes]
+            state[self.time], state[self.size, :count] = begin, own
         if count < state.shape[1]:
             memory.block[:, :, count:] = memory.block[:, :, :1]
         memory.floats[ORIGIN] = begin
@@ -420,9 +410,7 @@ class Plan:
         memory.integers[LAST_STOP], memory.integers[FIRST_STOP] = last, first
         if first:
             out[0] = memory.start
-            for name in ("stop", "kept"):
-                if name in self.place:
-                    memory.state[self.place[name]] = 1
+            memory.state[[self.place[name] for name in ("stop", "kept") if name in self.place]] = 1
 
     def _chunk(self, rows: int) -> int:
         """Number of lanes that are run at once, whole blocks; 0 if even one block is too long for one call."""
