@@ -417,8 +417,8 @@ class PlannedEvents:
         places, code = path[: n + 1].reshape(n + 1, -1), self.at_points
         code.run(places, values)
         count, cells, row = places.shape[1], code.memory.cells, code.lanes
-        starts = (code.alive * row, *range(0, code.count * row, row))
-        if count <= FEW and all([cells[i] * x > 0 for i in starts for x in cells[i + 1 : i + count]]):  # noqa: C419
+        firsts = (code.alive * row, *range(0, code.count * row, row))
+        if count <= FEW and all([cells[i] * x > 0 for i in firsts for x in cells[i + 1 : i + count]]):  # noqa: C419
             return self.nothing  # no value and no slope changes its sign
         shape, path = path.shape[1:-1], path.reshape(n + 2, -1, path.shape[-1])
         log = EventLog(events.count, shape, n)
