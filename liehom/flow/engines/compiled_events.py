@@ -30,6 +30,7 @@ FAILURES = (LiehomError, TypeError, ValueError, IndexError, KeyError, Arithmetic
 """What functions raise that were not written for this number of points."""
 RTOL = 1e-9
 NEAR = 1e-3  # relative distance of trial points
+FEW = 16  # points on paths, up to which their signs are compared one by one
 
 
 # Events of compiled runs: machine code makes the steps of a call, then events are sought in all of them at once. Event
@@ -292,33 +293,33 @@ class PointCode:
             raise TraceError("numbers of a trajectory are not compiled for events")
         self.constants: Array = np.zeros(max(1, len(self.kernel.run_constants)))
         self.alive: int = self.kernel.names.index("alive")
-        self._with_room(1)
+        self.lanes = 0  # for which there is memory
 
-    def _with_room(self, lanes: int) -> None:
-        """Memory for some lanes."""
-        self.lanes: int = padded(lanes, self.kernel.width)
-        self.memory = memory = Memory(self.kernel, self.lanes, self.constants)
-        memory.integers[PLACES["end"]] = memory.integers[PLACES["total"]] = 1
-        memory.floats[PLACES["step_size"]] = 1.0
-        memory.room("stops", 2)[:] = 1.0
-
-    def __call__(
-        self, given: Array | Sequence[Array], values: Mapping[str, float], start: Array | None = None
-    ) -> Array:  # fmt: skip
-        """Numbers (k, L) from others, each (L,), constants of the run, and initial points (N, L); NaN for none."""
+    def run(self, given: Array | Sequence[Array], values: Mapping[str, float], start: Array | None = None) -> None:
+        """Make numbers from others, each (L,), constants of the run, and initial points (N, L)."""
         lanes, rows, width = len(given[0]), len(given), self.kernel.width
         if self.lanes < lanes:
-            self._with_room(2 * lanes)
-        memory, state, filled = self.memory, self.memory.state, padded(lanes, width)
-        memory.block[:] = memory.first
-        state[:rows, :lanes] = given
-        state[:rows, lanes:filled] = state[:rows, :1]
+            self.lanes = padded(2 * lanes, width)
+            self.memory = memory = Memory(self.kernel, self.lanes, self.constants)
+            memory.integers[PLACES["end"]] = memory.integers[PLACES["total"]] = 1
+            memory.floats[PLACES["step_size"]] = 1.0
+            memory.room("stops", 2)[:] = 1.0
+            memory.first[0, :rows] = np.asarray(given)[:, :1]  # of lanes that only fill up a block
+            if start is not None:
+                memory.first[1, : len(start)] = start[:, :1]
+        memory = self.memory
+        memory.cells[:] = memory.fresh
+        memory.state[:rows, :lanes] = given
         if start is not None:
-            memory.start[: len(start), :lanes], memory.start[: len(start), lanes:filled] = start, start[:, :1]
+            memory.start[: len(start), :lanes] = start
         for i, name in enumerate(self.kernel.run_constants):
             self.constants[i] = values.get(name, 0.0)
-        memory.integers[PLACES["last"]] = filled // width
+        memory.integers[PLACES["last"]] = -(-lanes // width)
         self.kernel.run(memory.address)
+
+    def made(self, lanes: int) -> Array:
+        """The numbers (k, L) that were made; NaN for none."""
+        state = self.memory.state
         return np.where(state[self.alive, :lanes] > 0, state[: self.count, :lanes], np.nan)
 
 
@@ -329,16 +330,18 @@ def _of_coordinates(n: int, function: TrajectoryConstant) -> TrajectoryConstant:
 
 def events_key(functions: object) -> Hashable:
     """A key that event functions share if they are made at one place from the same values."""
-    if isinstance(functions, list | tuple):
+    if isinstance(functions, FunctionType):
+        place = id(functions.__code__), id(functions.__globals__)
+        if not (functions.__dict__ or functions.__closure__ or functions.__defaults__ or functions.__kwdefaults__):
+            return place
+    elif isinstance(functions, list | tuple):
         return tuple(map(events_key, functions))
     marks = repr(getattr(functions, "direction", None)), repr(getattr(functions, "terminal", None))
     if isinstance(functions, FunctionType):
-        try:
+        with suppress(ValueError):  # of a cell that is not assigned yet
             cells = [cell.cell_contents for cell in functions.__closure__ or ()]
             inner = [*cells, *(functions.__defaults__ or ()), *(functions.__kwdefaults__ or {}).values()]
-            return functions.__code__, id(functions.__globals__), *map(id, inner), *marks
-        except ValueError:  # a cell that is not assigned yet
-            pass
+            return *place, *map(id, inner), *marks
     return id(functions), *marks
 
 
@@ -354,6 +357,7 @@ class PlannedEvents:
         self.parts = Parts(self.functions if isinstance(self.functions, list | tuple) else [self.functions])
         self.at_points = self._at_points()
         self.in_steps: dict[int, PointCode | None] = {}
+        self.nothing = EventLog(self.events.count, np.shape(problem.start)[:-1], self.n)
 
     def _traced(self, tape: Tape) -> tuple[Any, Any, GeneratorField, Events]:
         """Point, time, field and events on a tape."""
@@ -403,24 +407,27 @@ class PlannedEvents:
         """Whether the code has the values of the functions at points (..., N) of the run and times (...,)."""
         wanted = np.array(self.events.values(times, points)).reshape(self.events.count, -1)
         values = {"length": 1.0, "direction": 1.0, **arg_values(self.problem.args, self.lead)}
-        made = self.at_points([*points.reshape(-1, self.n).T, times.reshape(-1)], values)
-        return np.allclose(made[: self.events.count], wanted, RTOL, RTOL * np.abs(wanted).max(initial=0))
+        self.at_points.run([*points.reshape(-1, self.n).T, times.reshape(-1)], values)
+        made = self.at_points.made(times.size)[: self.events.count]
+        return np.allclose(made, wanted, RTOL, RTOL * np.abs(wanted).max(initial=0))
 
-    def __call__(self, path: Array, values: Mapping[str, Any], span: tuple[float, float]) -> EventLog | None:
-        """The events on paths (j + 1, N + 2, L) of points, times and sizes. None if one may end a run."""
+    def __call__(self, path: Array, values: Mapping[str, Any]) -> EventLog | None:
+        """The events on paths (N + 2, ..., j + 1) of points, times and sizes. None if one may end a run."""
         events, n = self.events, self.n
-        k, _, lanes = path.shape
-        values = {**values, "length": abs(span[1] - span[0])}
-        made = self.at_points(path[:, : n + 1].transpose(1, 2, 0).reshape(n + 1, -1), values)
-        log = EventLog(events.count, np.shape(self.problem.start)[:-1], n)
-        if all((np.minimum.reduce(made, axis=1) * np.maximum.reduce(made, axis=1) > 0).tolist()):
-            return log  # no value and no slope changes its sign
-        g, ahead, back = made.reshape(3, events.count, lanes, k)
+        places, code = path[: n + 1].reshape(n + 1, -1), self.at_points
+        code.run(places, values)
+        count, cells, row = places.shape[1], code.memory.cells, code.lanes
+        firsts = (code.alive * row, *range(0, code.count * row, row))
+        if count <= FEW and all([cells[i] * x > 0 for i in firsts for x in cells[i + 1 : i + count]]):  # noqa: C419
+            return self.nothing  # no value and no slope changes its sign
+        shape, path = path.shape[1:-1], path.reshape(n + 2, -1, path.shape[-1])
+        log = EventLog(events.count, shape, n)
+        g, ahead, back = code.made(count).reshape(3, events.count, *path.shape[1:])
         occurrences: list[Occurrence] = []
         starts, ends = g[..., :-1], g[..., 1:]
         same = starts * ends > 0
         turning = same & (starts * back[..., 1:] > 0) & (starts * ahead[..., :-1] < 0)
-        t, y, sizes = path[:, n].T, path[:, :n].transpose(2, 1, 0), path[1:, n + 1].T
+        t, y, sizes = path[n], path[:n].swapaxes(0, 1), path[n + 1, :, 1:]
         for i in range(events.count):
             start, end, turns = starts[i], ends[i], turning[i]
             for lane in np.flatnonzero(events.left(i, start[:, 0], end[:, 0])).tolist():
@@ -436,8 +443,8 @@ class PlannedEvents:
             if locate is None:
                 return None
             given = [*y[b, :, j].T, t[b, j], sizes[b, j], t[b, j + 1], start[some], end[some], ahead[i, b, j]]
-            zeros = locate([*given, back[i, b, j + 1]], values, y[b, :, 0].T)
-            if np.isnan(zeros).any():
+            locate.run([*given, back[i, b, j + 1]], values, y[b, :, 0].T)
+            if np.isnan(zeros := locate.made(len(b))).any():
                 return None
             for here, s, time, *point in zeros.reshape(2, n + 3, -1):
                 found = occurrences_of(i, here, s, time, np.transpose(point))

@@ -16,7 +16,7 @@ from liehom.base.errors import InputError
 from liehom.base.pytrees import leaves
 from liehom.base.typing import Array, IntegerArray, Pytree
 from liehom.flow.action.fingerprint import Watch
-from liehom.flow.engines.compiled_events import EventSearch, planned_events
+from liehom.flow.engines.compiled_events import EventSearch, events_key, planned_events
 from liehom.flow.engines.engine import Problem, executed
 from liehom.flow.engines.lanes import (
     HandBack,
@@ -61,8 +61,8 @@ from liehom.flow.tracing.machine import Kernel
 COPIES_WITH_EVENTS = 8  # arrays of the size of the path, about, while events are sought
 MIN_STEPS_WITH_ENDS = 64  # with terminal events, steps in the first call; further calls double their number
 MAX_PLANS = 64  # number of plans that are kept
-NEVER: tuple[tuple[int, ...], Numbers | None, bool, Plan | None] = (), None, True, None
-"""Of the latest call without args and events: shape, numbers, whether it had no output times, and its plan."""
+NEVER: tuple[Hashable, Numbers | None, Plan | None] = None, None, None
+"""Of the latest call without args: its form but the numbers, these, and its plan."""
 
 
 @final
@@ -114,10 +114,11 @@ class LlvmEngine:
                 if type(begin) not in KINDS or type(end) not in KINDS:  # type: ignore[has-type]
                     return None
                 begin, end = float(begin), float(end)  # type: ignore[has-type]
-            points, times, events = floats("the start", y0), None, None
+            points, times, key = floats("the start", y0), None, None
             if "t_eval" in options or "events" in options:
                 options = dict(options)
                 times, events = options.pop("t_eval", None), options.pop("events", None)
+                key = None if events is None else events_key(events)
                 if times is not None and (times := floats("t_eval", times)) is None:
                     return None
             try:
@@ -127,11 +128,12 @@ class LlvmEngine:
             if points is None or numbers is None:
                 return None
             found = None if args is None else leaves(args)
-            (shape, known, is_free, plan), is_plain = self._latest, args is events is None
-            if not (is_plain and numbers is known and (times is None) is is_free and points.shape == shape):
-                plan = self._plans.get(form_of(points.shape, numbers, times, events, found))
-                if is_plain:
-                    self._latest = points.shape, numbers, times is None, plan
+            form = points.shape, times is None, key
+            same, known, plan = self._latest
+            if numbers is not known or form != same or args is not None:
+                plan = self._plans.get(form_of(form, numbers, found))
+                if args is None:
+                    self._latest = form, numbers, plan
             if plan is None or self._watch.changed():  # type: ignore[union-attr]
                 return None
             return plan(numbers, points, begin, end, times, args, found)
@@ -145,10 +147,12 @@ class LlvmEngine:
             return
         start, args = np.asarray(problem.start), problem.args
         numbers: Any = numbers_of.__wrapped__(dt=o.dt, looks=o.looks, dense_output=o.dense_output)
-        form = form_of(start.shape, numbers, o.t_eval, o.events, None if args is None else leaves(args))
+        own = start.shape, o.t_eval is None, None if o.events is None else events_key(o.events)
+        form = form_of(own, numbers, None if args is None else leaves(args))
         dimension = int(np.max(problem.orbit_dimension))
         known = self._plans.get(form)
-        if (known is not None and known.is_current) or not serves_all_points(problem, run.step, dimension):
+        is_current = known is not None and (known.events is None or not known.events.parts.changed())
+        if is_current or not serves_all_points(problem, run.step, dimension):
             return
         events = None if o.events is None else planned_events(problem, run.step, dimension, np.asarray(solution.y))
         if events is None and o.events is not None:

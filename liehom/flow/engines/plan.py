@@ -19,7 +19,7 @@ from liehom.base.typing import Array, IntegerArray, Pytree
 from liehom.flow.action.field import check_point
 from liehom.flow.action.space import Action
 from liehom.flow.engines.arguments import with_tight_frame
-from liehom.flow.engines.compiled_events import PlannedEvents, events_key
+from liehom.flow.engines.compiled_events import PlannedEvents
 from liehom.flow.engines.engine import Problem
 from liehom.flow.engines.lanes import (
     LANE_STEPS_FOR_THREADS,
@@ -46,7 +46,7 @@ from liehom.flow.tracing.machine import PLACES, Kernel, padded
 # same call. Whatever is unusual, or not right, has no such form: `Propagator` looks at it closely.
 
 KINDS = frozenset([float, int, np.float64, np.float32, np.int64, np.int32])
-EPS = float(np.finfo(np.float64).eps)
+ROUND_OFF = 8 * float(np.finfo(np.float64).eps)
 FLOAT = np.dtype(np.float64)
 
 
@@ -123,12 +123,9 @@ def _stops_of(times: Array, begin: float, end: float) -> tuple[Array, int, int] 
     return times, int(first == begin), len(times) - int(last == end)
 
 
-def form_of(
-    shape: tuple[int, ...], numbers: Numbers, t_eval: object, events: object, args: Sequence[Leaf] | None
-) -> Hashable:  # fmt: skip
+def form_of(form: Hashable, numbers: Numbers, args: Sequence[Leaf] | None) -> Hashable:
     """The form of a call, with the leaves of its args: calls of one form have one plan."""
-    form = None if args is None else tuple([_form_of_leaf(*leaf) for leaf in args])
-    return shape, numbers.form, t_eval is None, form, None if events is None else events_key(events)
+    return form, numbers.form, None if args is None else tuple([_form_of_leaf(*leaf) for leaf in args])
 
 
 def _form_of_leaf(path: str, x: object) -> Hashable:
@@ -192,7 +189,7 @@ ROOM = 64  # rows of the path, at first, of steps whose number is not known
 LAST_STOP, FIRST_STOP, ORIGIN, BEGIN, END_STEP, TOTAL, STEP_SIZE = (
     PLACES[name] for name in ("last_stop", "first_stop", "origin", "begin", "end", "total", "step_size")
 )
-OF_A_CALL = ("rest", "end", "direction", "tiny", "latest", "rtol", "atol", "max_step", "gap")
+OF_A_CALL = ("rest", "end", "direction", "tiny", "latest", "gap")
 """The numbers of a call that a kernel may take, besides args."""
 NO_VALUES: Mapping[str, Any] = {}
 TROUBLE = frozenset(["unkept", "failed", "near", "short", "conservation_short", "conservation_missed"])
@@ -230,6 +227,8 @@ class Plan:
         self.slots = self.constants.data.cast("B").cast("d")
         self.slot = {name: i for i, name in enumerate(kernel.run_constants)}
         self.own = [(i, OF_A_CALL.index(name)) for name, i in self.slot.items() if name in OF_A_CALL]
+        self.bounds = [(i, name) for name, i in self.slot.items() if name in BOUNDS]
+        self.numbers: Numbers | None = None  # from which the bounds in the memory are
         self.constants[[i for name, i in self.slot.items() if name == "checks"]] = 1.0
         names = () if problem.args is None else arg_values(problem.args, len(self.shape))
         self.names = [(name, self.slot.get(name)) for name in names]
@@ -247,17 +246,12 @@ class Plan:
         row = max(8 * (self.n + 2) / PATH_BYTES_PER_CALL, work / OPERATIONS_PER_CALL, 1 / LANE_STEPS_FOR_THREADS)
         self.short = int(1 / (row * self.lanes))
 
-    @property
-    def is_current(self) -> bool:
-        """Whether the event functions are those that were compiled."""
-        return self.events is None or not self.events.parts.changed()
-
     def __call__(
         self, numbers: Numbers, points: Array, begin: float, end: float, times: Array | None,
         args: Pytree, found: Sequence[Leaf] | None,
     ) -> Solution | None:  # fmt: skip
         """The solution, or None if the call needs a closer look."""
-        length, size, rest, total = abs(end - begin), numbers.dt, 8 * EPS * max(begin, end, -begin, -end), 0
+        length, size, rest, total = abs(end - begin), numbers.dt, ROUND_OFF * max(abs(begin), abs(end)), 0
         direction = 1.0 if end > begin else -1.0
         if not 0.0 < length < inf or (numbers.shape and numbers.shape != self.shape):
             return None
@@ -267,12 +261,12 @@ class Plan:
             if rest > (size if type(size) is float else np.min(size)):
                 return None
             if self.lockstep:
-                total = max(ceil(length / size - (SLACK + rest / size)), 1)
+                total = ceil(length / size - (SLACK + rest / size)) or 1
                 if total >= numbers.max_steps:
                     return None
             size = direction * size
         stops = None if times is None else _stops_of(times, begin, end)
-        if (times is not None and stops is None) or not self.is_current:
+        if (times is not None and stops is None) or (self.events is not None and self.events.parts.changed()):
             return None
         try:
             memory = self.free.pop()
@@ -296,13 +290,11 @@ class Plan:
             self.is_judged = True  # an ordinary call says whether the field is stiff
             return None
         if self.events is not None:
-            steps = path.reshape(n + 2, self.lanes, -1).transpose(2, 0, 1)
-            if (log := self.events(steps, {**values, "direction": direction}, (begin, end))) is None:
+            values = {**values, "length": abs(end - begin), "direction": direction}
+            if (log := self.events(path, values)) is None:
                 return None
-        if stops is not None:
-            times = stops[0].copy()
-        else:
-            times, y = path[n], path[:n].transpose(self.axes) if self.shape else path[:n]
+        times = path[n] if stops is None else stops[0].copy()
+        y = (path[:n].transpose(self.axes) if self.shape else path[:n]) if stops is None else y
         if self.ranked is not None:  # what the other entries need is copied: points may change
             start = points.reshape(self.lanes, n).copy()
         return solution_of(times, y, END, partial(self._others, task, args, state, path, start, log))
@@ -318,28 +310,29 @@ class Plan:
             self.stops[0] = self.stops[1] = end
         else:
             self._put(stops, memory, end)
-        integers[BEGIN], memory.floats[ORIGIN] = 0, begin
+        memory.floats[ORIGIN] = begin
         if total:
             integers[END_STEP] = integers[TOTAL] = total
             memory.floats[STEP_SIZE] = size
         else:
-            integers[END_STEP], cells[self.time], cells[self.size] = self.rows if self.keeps else self.most, begin, size
+            integers[BEGIN], integers[END_STEP] = 0, self.rows if self.keeps else self.most
+            cells[self.time], cells[self.size] = begin, size
         if self.keeps:
             path = memory.path(total or self.rows, n + 2)
             if path is not self.path:
-                self.path, self.columns, self.row = path, path[:, :, 0].T, memory.views["path"]
-            self.row[:n], self.row[n] = point, begin
+                self.path, self.head, self.columns = path, memory.views["path"][: n + 1], path[:0, :, 0].T
+            self.head[:n], self.head[n] = point, begin
         self.kernel.run(memory.address)
         left, most = cells[self.alive], total or int(cells[self.taken])
-        if left <= 0 if total else left >= 0 or most >= numbers.max_steps:
+        failed = left <= 0 if total else left >= 0 or most >= numbers.max_steps
+        if failed or (self.trouble and any([cells[i] > 0 for i in self.trouble])):  # noqa: C419 - quicker
             return None
-        for i in self.trouble:
-            if cells[i] > 0:
-                return None
         cells[self.taken] = most
         if path is not None:
             rows = total or integers[BEGIN]
-            path = self.columns[:, : rows + 1].copy()
+            if self.columns.shape[1] != rows + 1:
+                self.columns = self.path[: rows + 1, :, 0].T
+            path = self.columns.copy()
             if rows > most:  # some rows are not steps
                 path[n + 1, 0] = 1.0
                 path = path[:, path[n + 1] != 0]
@@ -379,10 +372,9 @@ class Plan:
             row[:count] = values[number.name][lanes] if isinstance(number, LaneConstant) else number(points)
         memory.cells[:] = memory.fresh
         memory.points[:] = points
-        if not total and isinstance(size, float):
-            state[self.time], state[self.size] = begin, size
-        elif not total:
-            state[self.time], state[self.size, :count] = begin, size.reshape(-1)[lanes]
+        if not total:
+            own = size if isinstance(size, float) else size.reshape(-1)[lanes]
+            state[self.time], state[self.size, :count] = begin, own
         if count < state.shape[1]:
             memory.block[:, :, count:] = memory.block[:, :, :1]
         memory.floats[ORIGIN] = begin
@@ -418,9 +410,7 @@ class Plan:
         memory.integers[LAST_STOP], memory.integers[FIRST_STOP] = last, first
         if first:
             out[0] = memory.start
-            for name in ("stop", "kept"):
-                if name in self.place:
-                    memory.state[self.place[name]] = 1
+            memory.state[[self.place[name] for name in ("stop", "kept") if name in self.place]] = 1
 
     def _chunk(self, rows: int) -> int:
         """Number of lanes that are run at once, whole blocks; 0 if even one block is too long for one call."""
@@ -436,10 +426,13 @@ class Plan:
         self, numbers: Numbers, begin: float, end: float, rest: float, direction: float, found: Sequence[Leaf] | None
     ) -> Mapping[str, Any]:
         """Take over the numbers of a call as constants of the run; returns those of args by name."""
-        dt, rtol, atol, most, least, _, _, looks, *_ = numbers
-        tiny, latest = rest if dt is not None or rest > least else least, abs(begin) + abs(end) + 1.0  # see bounds_of
-        gap = (gap_of(looks, end - begin, self.problem.field) if "gap" in self.slot else None) or 0.0
-        known: Any = rest, end, direction, tiny, latest, rtol, atol, most, gap
+        if numbers is not self.numbers:
+            self.numbers = numbers
+            for place, name in self.bounds:
+                self.slots[place] = getattr(numbers, name)
+        tiny = rest if numbers.dt is not None or rest > numbers.min_step else numbers.min_step
+        gap = gap_of(numbers.looks, end - begin, self.problem.field) if "gap" in self.slot else None
+        known = rest, end, direction, tiny, abs(begin) + abs(end) + 1.0, gap or 0.0  # see bounds_of
         for place, i in self.own:
             self.slots[place] = known[i]
         if found is None:
@@ -483,12 +476,8 @@ class Plan:
         self, task: Task, args: Pytree, state: Array | bytes, path: Array, start: Array | None, log: EventLog | None
     ) -> dict[str, object]:
         """The other entries of a solution, which are made when one of them is asked for."""
-        p, shape, graph, (given, _, stops, *span, _, direction, _, _) = (
-            self.problem,
-            self.shape,
-            self.kernel.graph,
-            task,
-        )
+        p, shape, graph = self.problem, self.shape, self.kernel.graph
+        given, _, stops, *span, _, direction, _, _ = task
         bound = p.field if args is None else p.field.with_args(args)
         p = replace(p, bound=bound, span=(np.float64(span[0]), np.float64(span[1])))
         rows = np.frombuffer(state, count=len(self.kept))[:, None] if isinstance(state, bytes) else state
