@@ -46,8 +46,8 @@ WEIGHTS: tuple[tuple[int, int, int, str], ...] = (
         "chains of branching rules, for physicists; Propagator.bind and the parameters of integrate_ensemble left",
     ),
     (
-        91288,
-        49058,
+        91291,
+        49073,
         306,
         "for everybody who reads the code: what no page shows and nobody calls left, runs, events, tables and landings "
         "stand once; quaternions for ROS and matrices of Heisenberg algebras, for roboticists and lecturers",
