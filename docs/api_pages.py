@@ -54,7 +54,7 @@ def member_names(cls: type) -> list[str]:
     inner = [base for base in cls.__mro__[1:] if base.__name__.startswith("_")]
     return [
         name
-        for name, value in {**dict(item for base in inner for item in vars(base).items()), **vars(cls)}.items()
+        for name, value in {name: vars(base)[name] for base in (cls, *inner) for name in vars(base)}.items()
         if not name.startswith("_")
         and (inspect.isfunction(value) or isinstance(value, kinds))
         and documented(getattr(cls, name))
