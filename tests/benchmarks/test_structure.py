@@ -21,7 +21,6 @@ from tests.benchmarks.structure_tasks import Task, tasks
 ROWS = tasks()
 ROOT = Path(__file__).resolve().parents[2]
 MEMORY = """
-import resource
 import liehom as lh
 from liehom.exact.algebra.core.jacobi import prove_jacobi
 g = lh.chevalley("E8")
@@ -31,7 +30,8 @@ assert (g.killing_form().rank(), g.centralizer([x]).dimension, g.center().dimens
 assert (g.semisimple_type(), g.real_form()) == ("E8", "e8(8)")
 assert [h.dimension for h in g.derived_series()] == [248] and g.radical().dimension == 0
 assert lh.adjoint(g).isotropy(x).dimension == 8
-print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
+# not ru_maxrss, which begins with the size of the process that started this one
+print(next(line.split()[1] for line in open("/proc/self/status") if line.startswith("VmHWM")))
 """
 
 
@@ -88,6 +88,7 @@ def test_a_demand_is_a_ratio(here: float, gap: float | str, factor: float, kept:
 
 
 @pytest.mark.slow
+@pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="no file with the memory of a process")
 def test_e8_stays_below_one_gigabyte() -> None:
     made = subprocess.run([sys.executable, "-c", MEMORY], cwd=ROOT, capture_output=True, text=True, check=True)
-    assert int(made.stdout) / 1e6 < 1  # ru_maxrss counts kilobytes
+    assert int(made.stdout) / 1e6 < 1  # kilobytes
