@@ -46,7 +46,7 @@ WEIGHTS: tuple[tuple[int, int, int, str], ...] = (
         "chains of branching rules, for physicists; Propagator.bind and the parameters of integrate_ensemble left",
     ),
     (
-        91291,
+        91294,
         49073,
         306,
         "for everybody who reads the code: what no page shows and nobody calls left, runs, events, tables and landings "

@@ -1,7 +1,7 @@
 """`LieAlgebra`, `Subalgebra`, `Homomorphism`, the table of their brackets, and the proofs of their axioms.
 
-`LieAlgebra` and `Subalgebra` are tables of contents: their methods lead to the folders beside this one, and only they
-import upwards. The conventions are in docs/notation.md.
+`LieAlgebra` and `Subalgebra` are tables of contents. Their methods lead to the other folders of `algebra`, and only
+they import upwards. The conventions are in docs/notation.md.
 """
 
 from liehom.base.lazy import lazy_modules

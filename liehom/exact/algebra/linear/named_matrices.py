@@ -73,7 +73,7 @@ def octonion_table(parameters: tuple[int, int, int] = OCTONIONS) -> IntegerArray
 # Matrix bases of f4 and e6 on the Albert algebra, the hermitian 3 x 3 matrices over the octonions.
 # For signs (g1, g2, g3) the matrices with X_ij = g_i g_j conj(X_ji) form a Jordan algebra with the product L_X Y = X o
 # Y = (XY + YX) / 2. The commutators [L_X, L_Y] span the derivations, f4. Together with the L_X of trace zero they span
-# e6, which preserves the cubic norm. Coordinates are (X_11, X_22, X_33; X_23; X_31; X_12) in R^{3 + 8 + 8 + 8}: the
+# e6, which preserves the cubic norm. Coordinates are X_11, X_22, X_33, X_23, X_31, X_12 in R^{3 + 8 + 8 + 8}. The
 # first three basis vectors E_1, E_2, E_3 are orthogonal primitive idempotents.
 
 _DIMENSION = 27
@@ -203,8 +203,8 @@ def _negative(n: int) -> IntegerArray:
 
 
 # The bases of classical and exceptional linear Lie algebras by name: one table for constructors and catalogue.
-# The second parameter of a classical name is a number q (a form of signature (p, q)) or a letter, 'R', 'C' or 'H',
-# for the scalars.
+# The second parameter of a classical name is a number or a letter. A number q stands for a form of signature (p, q),
+# and 'R', 'C' or 'H' for the scalars.
 #
 # ==========  =====================================  ==========================
 # gl, sl      (n), (n, 'C'), (n, 'H')                on R^n, R^2n, R^4n

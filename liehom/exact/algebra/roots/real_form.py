@@ -422,8 +422,11 @@ Nodes = tuple[tuple[int, ...], tuple[int, ...]]
 
 
 def _classical_nodes(kind: str, rank: int, numbers: tuple[int, ...], letter: str) -> Nodes:
-    """Of sl(n,R) and sl(m,H) the flip, and for sl(2m,R) the middle node; of su(p,q) and sp(p,q) node q, from 1; of
-    sp(2n,R) and so*(2n) the last node; of so(p,q) the flip of D_n if p and q are odd, and the node of an even part."""
+    """The automorphism and the painted node of the Vogan diagram of a classical real form.
+
+    sl(n,R) and sl(m,H) have the flip, sl(2m,R) the middle node, too. su(p,q) and sp(p,q) have node q, from 1, and
+    sp(2n,R) and so*(2n) the last node. so(p,q) has the flip of D_n if p and q are odd, and the node of an even part.
+    """
     automorphism: tuple[int, ...] = ()
     node = numbers[1] if len(numbers) > 1 else 0  # from 1, 0 for none
     if kind == "sl":
