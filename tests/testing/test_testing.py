@@ -3,6 +3,7 @@
 import json
 import random
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -115,3 +116,90 @@ def test_a_certificate_may_be_its_json_object() -> None:
     data = json.loads(json.dumps(lh.decide_fullness(pair).certificate.to_json()))
     testing.check_certificate(pair, data)
     assert isinstance(Certificate.from_json(data), Certificate)
+
+
+# -- one wrong object for each refusal ---------------------------------------------------------------------------
+def dependent(pair: lh.Pair) -> lh.Pair:
+    """The pair with the first row of h in place of all."""
+    return lh.Pair(pair.algebra, lh.Subalgebra(pair.algebra, QQ.matrix([[1, *[0] * 5]] * 3), check=False))
+
+
+def one_less(self: Any, make: Any = lh.Pair.isotropy_matrices) -> Any:
+    return make(self)[:-1]
+
+
+def doubled(self: Any, make: Any = lh.Pair.isotropy_matrices) -> Any:
+    return [a.scale(2) for a in make(self)]
+
+
+def onto_more(self: Any, make: Any = lh.Subalgebra.quotient) -> Any:
+    data = make(self)
+    return replace(data, projection=QQ.matrix([[1] * data.projection.ncols] * data.projection.nrows))
+
+
+def whole(self: lh.Representation, point: object) -> lh.Subalgebra:
+    return lh.Subalgebra(self.algebra, QQ.identity(self.algebra.dimension))
+
+
+Patches = dict[tuple[Any, str], Any]
+PAIR, RHO, TABLE = (lambda: lh.pair("so(4)/so(3)")), (lambda: lh.defining(lh.so(3))), (lambda: lh.sl(2))
+OTHER = lambda *_, **__: lh.Pair(lh.abelian(3), [])  # noqa: E731
+FORGERIES: list[tuple[str, str, Callable[[Any], None], Callable[[], Any], Patches]] = [
+    ("killing form", "not symmetric", testing.check_lie_algebra, TABLE,
+     {(lh.LieAlgebra, "killing_form"): lambda _: QQ.matrix([[0, 1, 0], [0, 0, 0], [0, 0, 0]])}),
+    ("Jacobi", "is not 0", testing.check_lie_algebra, lambda: broken([(0, 1, 0, 1), (1, 2, 1, 1)], 3), {}),
+    ("killing form", "differ", testing.check_lie_algebra, TABLE,
+     {(lh.LieAlgebra, "killing_form"): lambda _: QQ.identity(3)}),
+    ("change of basis", "another table", testing.check_lie_algebra, TABLE,
+     {(lh.LieAlgebra, "change_of_basis"): lambda *_: lh.so(3)}),
+    ("file", "another table", testing.check_lie_algebra, TABLE, {(testing, "from_json"): OTHER}),
+    ("file", "another table", testing.check_lie_algebra, TABLE, {(testing, "from_json"): lambda _: lh.sl(2)}),
+    ("shape", "2 matrices for dimension 3", testing.check_representation, RHO,
+     {(lh.Representation, "matrices"): tuple(lh.defining(lh.so(3)).matrices[:2])}),
+    ("shape", "not N x N", testing.check_representation, RHO,
+     {(lh.Representation, "matrices"): tuple(lh.defining(lh.so(4)).matrices[:3])}),
+    ("isotropy", "moves the point", testing.check_representation, RHO, {(lh.Representation, "isotropy"): whole}),
+    ("orbit", "is not dim g = 3", testing.check_representation, RHO,
+     {(lh.Representation, "orbit_dimension"): lambda *_: 1}),
+    ("basis", "dependent", testing.check_pair, lambda: dependent(PAIR()), {}),
+    ("quotient", "does not vanish on h", testing.check_pair, PAIR, {(lh.Subalgebra, "quotient"): onto_more}),
+    ("isotropy", "2 matrices for dim h = 3", testing.check_pair, PAIR, {(lh.Pair, "isotropy_matrices"): one_less}),
+    ("isotropy", "differ on g/h", testing.check_pair, PAIR, {(lh.Pair, "isotropy_matrices"): doubled}),
+    ("file", "another pair", testing.check_pair, PAIR,
+     {(testing, "from_json"): lambda data, read=testing.from_json: lh.Pair(read(data).algebra, [])}),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("check", "words", "run", "make", "patches"), FORGERIES, ids=[
+    f"{i}: {row[0]}, {row[1]}" for i, row in enumerate(FORGERIES)
+])  # fmt: skip
+def test_each_refusal_has_an_object_that_only_it_stops(
+    check: str, words: str, run: Any, make: Any, patches: Patches, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    wrong = make()
+    if not (check == "Jacobi" or words == "dependent"):
+        run(wrong)
+    for (owner, name), value in patches.items():
+        monkeypatch.setattr(owner, name, value)
+    with pytest.raises(ConformanceError, match=words) as caught:
+        run(wrong)
+    assert caught.value.check == check
+
+
+def test_refusals_of_a_checker_that_accepts_all_and_of_a_search_that_depends_on_the_basis(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    pair = lh.load(EXAMPLES / "so4_so3.json")
+    certificate, another = (lh.decide_fullness(p).certificate for p in (pair, lh.pair("R^2/0")))
+    assert another.full != certificate.full
+    testing.check_certificate(pair, certificate)
+    for check, words, owner, name, value in (
+        ("control", "empty", testing, "verify_certificate", lambda *_: True),
+        ("invariance", "basis", testing, "decide_fullness", lambda *_: lh.decide_fullness(lh.pair("R^2/0"))),
+        ("file", "another", Certificate, "from_json", lambda *_: another),
+    ):
+        with monkeypatch.context() as patch:
+            patch.setattr(owner, name, value)
+            with pytest.raises(ConformanceError, match=words) as caught:
+                testing.check_certificate(pair, certificate)
+        assert caught.value.check == check

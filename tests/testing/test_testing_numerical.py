@@ -54,6 +54,22 @@ def test_an_action_that_leaves_the_orbit_is_caught() -> None:
     assert caught.value.check in ("inverse", "orbit")
 
 
+def test_each_refusal_of_an_action_has_one_that_only_it_stops(monkeypatch: pytest.MonkeyPatch) -> None:
+    rho = lh.defining(lh.so(3))
+    action, act = lh.Action(rho), lh.Action(rho).act
+    for check, words, wrong in (
+        ("inverse", "is not m", lambda x, m: act(x, m) * (1 + 1e-6 * x[..., :1] ** 4)),
+        ("order 2", r"at t\^0", lambda x, m: -act(x, m)),
+        ("order 2", r"at t\^1", lambda x, m: act(2 * x, m)),
+        ("order 2", r"at t\^2", lambda x, m: act(x, m) * (1 + 4e-10 * (x**2).sum(axis=-1, keepdims=True))),
+        ("orbit", "leaves the orbit", lambda x, m: act(x, m) * np.exp(100 * x[..., :1] ** 3)),
+    ):
+        monkeypatch.setattr(lh.Action, "act", lambda _, x, m, wrong=wrong: wrong(x, m))
+        with pytest.raises(ConformanceError, match=words) as caught:
+            check_space(action)
+        assert caught.value.check == check
+
+
 def test_an_action_that_is_another_one_on_series_is_caught() -> None:
     exact = lh.Action(lh.adjoint(lh.so(3)))
 

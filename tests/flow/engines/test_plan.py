@@ -472,6 +472,17 @@ def test_a_path_that_is_longer_than_its_memory_goes_on(count: int, monkeypatch: 
     assert_same(sol, propagator(BODY, lh.RKMK("rk45"))[0]((0.0, 12.0), points, rtol=1e-3))
 
 
+@pytest.mark.parametrize("count", [1, 3, 100])
+def test_runs_that_grow_by_one_step_have_room_for_each(count: int) -> None:
+    points = sphere(count) if count > 1 else START
+    made, engine = propagator(BODY, lh.RKMK("rk4"))
+    for steps in (2, 1, 2, 3, 4, 5, 6, 5, 9, 10):
+        sol = made((0.0, 0.1 * steps), points, dt=0.1)
+        assert_same(sol, propagator(BODY, lh.RKMK("rk4"))[0]((0.0, 0.1 * steps), points, dt=0.1))
+        np.testing.assert_allclose(sol.t, np.broadcast_to(0.1 * np.arange(steps + 1), sol.t.shape), rtol=0, atol=1e-15)
+    assert engine.solved == 1
+
+
 def test_entries_that_are_made_later_do_not_depend_on_what_happens_meanwhile() -> None:
     made, _ = propagator(step=lh.Corrected(lh.Euler(), 4))
     options = {"dt": 0.1, "dense_output": True}
@@ -559,6 +570,31 @@ def test_events_of_a_second_call_are_those_of_the_first(step: Any, options: dict
                     np.testing.assert_allclose(x, y, rtol=0, atol=1e-12)
         seen += sum(np.size(np.concatenate(list(np.reshape(t, -1)))) if count > 1 else len(t) for t in sol.t_events)
     assert seen >= 3 * count
+
+
+@pytest.mark.parametrize("shape", [(4,), (2, 3)])
+def test_events_have_the_args_of_their_trajectory(shape: tuple[int, ...]) -> None:
+    def level(t: Any, m: Any, args: Any) -> Any:
+        return m[..., 1] - args["level"] - args["shift"][1]
+
+    field = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m, t, args: -m / args["inertia"])
+    made, _ = propagator(field, lh.Taylor(8))
+    count, seen = int(np.prod(shape)), 0
+    points = sphere(count).reshape(*shape, 3)
+    for scale in (0.1, 0.2, 0.3):
+        levels = scale * np.linspace(-1, 1, count).reshape(shape)
+        args = {
+            "level": lh.PerTrajectory(levels), "shift": np.array([9.0, 0.05]),
+            "inertia": lh.PerTrajectory(np.linspace(1, 2, count).reshape(*shape, 1) * [1.0, 2.0, 3.0]),
+        }  # fmt: skip
+        sol = made((0.0, 20.0), points, dt=0.1, args=args, events=level)
+        plain = lh.integrate(field, (0.0, 20.0), points, step=made.step, dt=0.1, args=args, events=level, engine="numpy")
+        for place in np.ndindex(shape):
+            times, wanted = sol.t_events[0][place], plain.t_events[0][place]
+            np.testing.assert_allclose(times, wanted, rtol=0, atol=1e-11)
+            np.testing.assert_allclose(sol.y_events[0][place][:, 1], levels[place] + 0.05, rtol=0, atol=1e-13)
+            seen += len(times)
+    assert seen > 3 * count
 
 
 def test_an_event_function_that_is_made_in_each_call_is_compiled_once() -> None:

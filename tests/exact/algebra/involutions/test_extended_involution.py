@@ -1,5 +1,6 @@
 """Cartan involutions from elliptic and hyperbolic elements, over the field or a larger one, in dense bases."""
 
+import random
 from typing import Any
 
 import numpy as np
@@ -9,13 +10,13 @@ import liehom as lh
 from liehom.base.errors import LimitError, NoRationalInvolutionError, UndecidedError
 from liehom.base.typing import IntegerArray
 from liehom.exact.algebra.involutions.cartan_decomposition import cartan_decomposition, is_cartan_involution
-from liehom.exact.algebra.involutions.cartan_involution import approximate_involution
+from liehom.exact.algebra.involutions.cartan_involution import approximate_involution, float_constants, short_elements
 from liehom.exact.algebra.involutions.field_involutions import (
     _has_nilpotent,
     elliptic_elements,
     elliptic_involution,
 )
-from liehom.exact.algebra.involutions.rational_involution import lattice_order
+from liehom.exact.algebra.involutions.rational_involution import _Search, lattice_order
 from liehom.exact.algebra.structure.ideals import over_extension
 from tests.exact.algebra.involutions.test_cartan_decomposition import (
     CUBIC,
@@ -213,3 +214,46 @@ def test_over_extension_keeps_the_field_of_a_trivial_one() -> None:
 
     g = lh.so(3)
     assert over_extension(g, trivial_extension(lh.QQ)) is g
+
+
+FORMS = {"so(3)": lambda: lh.so(3), "sl(2)": lambda: lh.sl(2), "so(3,1)": lambda: lh.so(3, 1)}
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.parametrize("name", FORMS)
+def test_a_search_reduces_the_lattice_and_all_that_is_expressed_in_it(name: str, seed: int) -> None:
+    given = FORMS[name]()
+    change = lh.QQ.matrix(lh.testing.random_unimodular(given.dimension, random.Random(seed)))
+    algebra, old = given.change_of_basis(change), given.cartan_decomposition().theta.T
+    theta = change @ old @ change.inverse()
+    search = _Search(algebra, theta.to_numpy())
+    before = np.trace(-search.killing @ search.theta.T)
+    while search.reduce():
+        pass
+    form, reduced = -search.killing @ search.theta.T, algebra.change_of_basis(search.rows)
+    assert abs(search.rows.determinant()) == 1 and np.trace(form) < before
+    np.testing.assert_array_equal(search.killing, reduced.killing_form().to_numpy())
+    np.testing.assert_array_equal(search.constants, float_constants(reduced))
+    np.testing.assert_allclose(
+        search.theta, (search.rows @ theta @ search.rows.inverse()).to_numpy(), rtol=0, atol=1e-9
+    )
+    lengths = -np.diag(given.killing_form().to_numpy() @ old.T.to_numpy())
+    np.testing.assert_allclose(np.sort(np.diag(form)), np.sort(lengths), rtol=0, atol=1e-9)  # an orthogonal basis
+
+
+@pytest.mark.parametrize("scale", [1, 2])
+@pytest.mark.parametrize("name", FORMS)
+def test_short_elements_are_sums_and_integral_brackets_in_the_order_of_their_lengths(name: str, scale: int) -> None:
+    algebra = in_dense_basis(FORMS[name](), 3)
+    n = algebra.dimension
+    algebra = algebra.change_of_basis([[scale * int(i == j) for j in range(n)] for i in range(n)])
+    theta, constants = algebra.cartan_decomposition().theta.to_numpy().T, float_constants(algebra)
+    rows = short_elements(algebra, theta)
+    one = np.eye(n)
+    wanted = [*one, *(one[i] + sign * one[j] for i in range(n) for j in range(i) for sign in (1, -1))]
+    if (constants == np.rint(constants)).all():
+        wanted += [constants[i, j] for i in range(n) for j in range(i) if constants[i, j].any()]
+    both = {tuple(s * row + 0.0) for row in wanted for s in (1, -1)}
+    assert len(both) == 2 * len(rows) and {tuple(s * row + 0.0) for row in rows for s in (1, -1)} == both
+    lengths = np.einsum("ai,ij,aj->a", rows, -algebra.killing_form().to_numpy() @ theta.T, rows)
+    assert (np.diff(lengths) >= -1e-9 * lengths[-1]).all()

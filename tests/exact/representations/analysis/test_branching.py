@@ -18,7 +18,9 @@ from hypothesis import given, settings, strategies as st
 
 import liehom as lh
 from liehom.base.errors import CatalogError, InputError, ShapeError
-from liehom.exact.representations.analysis.branching import module_name
+from liehom.exact.representations.analysis.branching import module_name, modules_of_size, symmetric_images
+from liehom.exact.representations.highest_weight.characters import weights_up_to
+from liehom.exact.representations.highest_weight.weights import weight_space
 from tests.sampling import examples
 
 TABLES = json.loads(
@@ -279,3 +281,19 @@ def test_bad_calls_of_a_rule_are_refused() -> None:
         R.symmetric_power_decomposition("A1", [1], -1)
     with pytest.raises(InputError, match="names of modules are read by branching rules only"):
         lh.tensor_product_decomposition("D5", "16", "16")
+
+
+@pytest.mark.parametrize("kind", ["A2", "A3", "A4", "D4", "D5", "D6", "E6"])
+def test_names_of_modules_differ_and_those_of_exchanged_ones_only_in_bars_and_letters(kind: str) -> None:
+    weights = list(weights_up_to(weight_space(kind), 700))
+    names = {mu: module_name(kind, mu) for mu in weights}
+    assert len(set(names.values())) == len(weights)
+    for mu, name in names.items():
+        images, dual = symmetric_images(kind, mu), R.dual_weight(kind, mu)
+        assert len({re.sub(r"bar|[vsc]", "", names[image]) for image in images}) == 1
+        assert name.startswith(str(R.weyl_dimension(kind, mu)))
+        if dual != mu:  # of two dual modules the smaller class has no bar, but for the 6 of SU(3)
+            smaller = (R.congruency_class(kind, mu)[::-1], dual) < (R.congruency_class(kind, dual)[::-1], mu)
+            assert ("bar" in name) is (smaller is (sorted((mu, dual)) == [(0, 2), (2, 0)] and kind == "A2"))
+        else:
+            assert "bar" not in name and (name[-1] in "vsc") is (len(images) > 1)

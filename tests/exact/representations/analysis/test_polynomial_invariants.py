@@ -1,10 +1,13 @@
 """Invariant polynomials and Hilbert series, against published series."""
 
+import re
+
 import pytest
 import sympy
 
 import liehom as lh
 from liehom.base.errors import InputError
+from liehom.exact.representations.analysis.polynomial_invariants import HilbertSeries
 from liehom.exact.representations.core.representation import Representation
 
 
@@ -83,6 +86,21 @@ def test_invariants_are_as_many_as_the_series_says(rho: Representation) -> None:
             for a in rho.matrices:
                 image = sympy.Matrix(rho.size, rho.size, [sympy.Rational(str(x)) for x in a.entries()])
                 assert sympy.expand((gradient * image * sympy.Matrix(names))[0]) == 0
+
+
+@pytest.mark.parametrize(
+    ("above", "below"),
+    [
+        ((1,), ()), ((1,), (1,)), ((1,), (1, 1, 2)), ((1, 1), (1,)), ((1, -1, 1), (2,)), ((2, 0, -3, 1), ()), ((0, -1), ()),
+        ((0, 2, -1, -2), (1, 3)), ((-1,), (2, 2)),
+    ],
+)  # fmt: skip
+def test_what_is_printed_is_the_series_and_has_no_idle_signs(above: tuple[int, ...], below: tuple[int, ...]) -> None:
+    series = HilbertSeries(above, below)
+    printed = sympy.sympify(repr(series).replace("^", "**"))
+    assert sympy.cancel(printed - series.expression) == 0
+    assert not re.search(r"\^[01]\b|\b1\*t|\+ -|t\^\d+\*\*|\(\(?\)", repr(series))
+    assert series.dimensions(7) == [sympy.series(series.expression, n=8).coeff(sympy.Symbol("t"), k) for k in range(8)]
 
 
 def test_what_is_printed() -> None:
