@@ -38,8 +38,7 @@ def inertia_tensor(inertia: object, size: int = 3) -> ExactMatrix:
     if entries.shape == (size,):
         entries = np.diag(entries)
     if entries.shape != (size, size):
-        moments = "three moments" if size == 3 else f"{size} moments"
-        raise ShapeError(f"the inertia has shape {entries.shape}, expected {moments} or a ({size}, {size}) matrix")
+        raise ShapeError(f"the inertia has shape {entries.shape}, expected {size} moments or a ({size}, {size}) matrix")
     exact = [[_rational(x) for x in row] for row in entries]
     largest = max(abs(x) for row in exact for x in row)
     for i in range(size):

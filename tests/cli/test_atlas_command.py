@@ -99,3 +99,13 @@ def test_malformed_facts_are_refused(built: Path, tmp_path: Path) -> None:
     entry["facts"]["key"] = -1
     (tmp_path / "other.jsonl").write_text(json.dumps(entry) + "\n", encoding="utf-8")
     assert RUN.invoke(app, ["atlas", "show", str(tmp_path / "other.jsonl")]).exit_code == 2
+
+
+@pytest.mark.parametrize(("undecided", "code"), [((0, 0), 0), ((0, 1), 1), ((2, 0), 1)])
+def test_the_exit_code_of_a_build_says_whether_pairs_are_undecided(
+    undecided: tuple[int, int], code: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    counts = {name: {"pairs": 3, "undecided": n} for name, n in zip("ab", undecided, strict=True)}
+    monkeypatch.setattr("liehom.studies.atlas.write_entries", lambda *_: {"counts": counts})
+    done = RUN.invoke(app, ["atlas", "build", str(tmp_path / "atlas.jsonl"), "--family", "group", "--json"])
+    assert done.exit_code == code and json.loads(done.stdout) == counts

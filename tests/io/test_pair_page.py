@@ -7,9 +7,11 @@ import re
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
+import sympy
 
 import liehom as lh
 from liehom.exact.fullness.verdict import Verdict
@@ -378,3 +380,15 @@ def test_the_cone_turns_by_keys_buttons_and_dragging(tmp_path: Path) -> None:
     assert min(out["painted"], out["then"]) > 5000
     assert out["open"] is True
     assert out["still"] is False
+
+
+@pytest.mark.parametrize(
+    "coefficients",
+    [[], [0], [0, 0], [1], [-1], [0, 1], [0, -1], [-2, 0, 1], [1, -1, 1], ["-1/2", "3/2", 0, -1], [0, 0, 2]],
+)
+def test_a_polynomial_on_a_page_has_the_given_coefficients(coefficients: list[Any]) -> None:
+    theta = sympy.Symbol("θ")
+    text = html._polynomial(lh.QQ, [lh.QQ.convert(c) for c in coefficients])
+    wanted = sum((sympy.Rational(c) * theta**i for i, c in enumerate(coefficients)), sympy.Integer(0))
+    assert sympy.expand(sympy.sympify(text.replace("^", "**"), {"θ": theta}) - wanted) == 0
+    assert text and "+ -" not in text and not re.search(r"θ\^[01]\b|\b1\*?θ", text)

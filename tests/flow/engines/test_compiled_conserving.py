@@ -167,3 +167,13 @@ def test_an_ensemble_larger_than_the_sample_of_ranks(count: int) -> None:
     made = lh.integrate(BODY, (0, 1), sphere(count), step=Conserving(lh.Heun(), energy), dt=0.1, engine="llvm")
     drift = np.abs(energy(np.moveaxis(made.y, 1, -1)) - energy(sphere(count))[:, None]).max()
     assert drift <= 4 * EPS and made.report.conservation.rank == 1
+
+
+@pytest.mark.parametrize("y0", [[0.0, 0.0, 1.0], [0.6, 0.48, 0.64], [[0.0, -2.0, 0.0], [0.6, 0.48, 0.64]]], ids=str)
+def test_equilibria_are_left_alone_by_compiled_code_too(y0: list[Any]) -> None:
+    sol, plain = (
+        lh.integrate(BODY, (0.0, 3.0), y0, step=Conserving(lh.Heun(), energy), dt=0.1, engine=engine)
+        for engine in ("llvm", "numpy")
+    )
+    assert sol.report.engine == "llvm" and sol.report.equilibria == plain.report.equilibria
+    np.testing.assert_allclose(sol.y, plain.y, rtol=0, atol=1e-13)

@@ -588,7 +588,9 @@ def test_events_have_the_args_of_their_trajectory(shape: tuple[int, ...]) -> Non
             "inertia": lh.PerTrajectory(np.linspace(1, 2, count).reshape(*shape, 1) * [1.0, 2.0, 3.0]),
         }  # fmt: skip
         sol = made((0.0, 20.0), points, dt=0.1, args=args, events=level)
-        plain = lh.integrate(field, (0.0, 20.0), points, step=made.step, dt=0.1, args=args, events=level, engine="numpy")
+        plain = lh.integrate(
+            field, (0.0, 20.0), points, step=made.step, dt=0.1, args=args, events=level, engine="numpy"
+        )
         for place in np.ndindex(shape):
             times, wanted = sol.t_events[0][place], plain.t_events[0][place]
             np.testing.assert_allclose(times, wanted, rtol=0, atol=1e-11)

@@ -356,3 +356,18 @@ def test_wrong_orders_spaces_and_steps() -> None:
     formula = closed_form(spin(), ["m0", "0", "1"], lh.Euler(), 2)
     with pytest.raises(InputError, match="has the symbols"):
         formula.equal("x", 0)
+
+
+def test_formulas_of_divisors_that_are_not_factorized_are_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
+    """zeta_2 of a body without symmetry is a quotient, of which a factor is left out if a denominator is forgotten."""
+    psi = ["w1*m0", "w2*m1", "w3*m2 + m0*m1"]
+    usual = closed_form(lh.adjoint(lh.so(3)), psi, lh.Heun(), 3)
+    monkeypatch.setattr("liehom.flow.steps.symbolic_problem.MAX_TERMS_TO_FACTOR", 0)
+    plain = closed_form(lh.adjoint(lh.so(3)), psi, lh.Heun(), 3)
+    point = dict(zip(SYMBOLS, [sympy.Rational(x) for x in ("3/5", "12/25", "16/25", "1", "5/2", "-3")], strict=True))
+    assert usual.zeta[2] != [0, 0, 0] and usual.clock  # equal on the sphere: coordinates may be written in other ways
+    for one, other in ((usual.zeta, plain.zeta), (usual.factor, plain.factor), (usual.clock, plain.clock)):
+        assert one.keys() == other.keys()
+        for k, value in one.items():
+            for x, y in zip(np.ravel(value), np.ravel(other[k]), strict=True):
+                assert x.subs(point) == y.subs(point) and x.subs(point).is_rational
