@@ -19,7 +19,7 @@ def test_great_circles(n: int, exact: bool) -> None:
     metric = rho.pair(point).invariant_metrics()([1])
     x = ["3/5", "4/5"] + ["0"] * (n - 2) if exact else [0.6, 0.8] + [0.0] * (n - 2)
     curve = lh.geodesic(metric, x, (0, 7), representation=rho, t_eval=TIMES, rtol=1e-12, atol=1e-12)
-    assert curve.homogeneous is exact
+    assert curve.homogeneous is exact and np.array_equal(curve.t, TIMES)
     points = curve.points(point)
     start = (points[1] - np.cos(TIMES[1]) * points[0]) / np.sin(TIMES[1])
     assert np.allclose(points, np.outer(np.cos(TIMES), points[0]) + np.outer(np.sin(TIMES), start), atol=1e-10)

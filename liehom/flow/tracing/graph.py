@@ -138,12 +138,6 @@ class Expr:
     def __pos__(self) -> Expr:
         return self
 
-    def __pow__(self, other: object) -> Expr:
-        return self.tape.power(*self._with(other))
-
-    def __rpow__(self, other: object) -> Expr:
-        return self.tape.power(*self._with(other)[::-1])
-
     def __getattr__(self, name: str) -> Callable[..., Expr]:
         # numpy's functions call these methods on the entries of an array of objects
         if name in FOLDED and name not in ("pow", "abs"):

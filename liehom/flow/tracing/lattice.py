@@ -142,9 +142,6 @@ class LatticeTraced(NDArrayOperatorsMixin):
     def __bool__(self) -> bool:
         return bool(self.inner)
 
-    def __repr__(self) -> str:
-        return f"<one site of an array of shape {self.shape}>"
-
     # -- numpy's protocols -------------------------------------------------------------------------------
     def __array__(self, dtype: npt.DTypeLike | None = None, copy: bool | None = None) -> npt.NDArray[Any]:
         raise TraceError(

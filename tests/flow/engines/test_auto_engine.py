@@ -1,5 +1,6 @@
 """engine="auto": Python written from the trace against numpy, when which code is taken, and what stays with numpy."""
 
+import pickle
 import random
 from collections.abc import Iterator
 from pathlib import Path
@@ -256,3 +257,11 @@ def test_errors_of_psi_are_those_of_numpy() -> None:
 
     with pytest.raises(KeyError, match="a field that is not there"):
         lh.integrate(lh.GeneratorField(RHO, psi), (0, 10), START, step="rk4", dt=0.1)
+
+
+def test_a_copy_from_another_process_begins_anew() -> None:
+    engine = python()
+    lh.integrate(BODY, (0, 1), START, dt=0.1, engine=engine)
+    copy = pickle.loads(pickle.dumps(engine))
+    assert type(copy) is AutoEngine and copy.made == {"numpy": 0, "python": 0}
+    assert_same(*(lh.integrate(BODY, (0, 1), START, dt=0.1, engine=e) for e in (copy, "numpy")))

@@ -65,7 +65,10 @@ def test_rare_functions_agree_in_one_field() -> None:
         filled = np.full_like(m, 0.25) + np.zeros_like(m) + np.ones_like(m)
         rows = np.stack([m[..., 0], m[..., 1], m[..., 2]]).T
         rows = rows if rows.ndim == m.ndim else rows.T
-        return np.where(some[..., None], x, -x) + least[..., None] + filled + (turned @ m[..., None])[..., 0] + m.real
+        lower = np.tril(m[..., :, None] * m[..., None, :]) @ np.ones(3)
+        more = np.reciprocal(m + 3.0) + np.positive(m) * np.conj(m) + lower + np.reshape(list(m.flat), m.shape)
+        shown = np.where(some[..., None], x, -x) + least[..., None] + filled + (turned @ m[..., None])[..., 0]
+        return shown + m.real + more
 
     assert_same(*both(field(psi), (0, 1), sphere(5), step=lh.RKMK("heun"), dt=0.11), ulps=64)
 

@@ -189,6 +189,8 @@ def test_values_at_one_site_have_the_shape_of_the_lattice() -> None:
     entries = np.array([inputs.load(("m", 0, c), (0, 0)) for c in range(3)], dtype=object).reshape(1, 1, 3)
     m = LatticeTraced(inputs, lh.tracing.Traced(inputs.tape, entries))
     assert (m.shape, m.ndim, m.size, m.dtype, len(m)) == ((4, 5, 3), 3, 60, np.dtype(float), 4)
+    with pytest.raises(lh.errors.TraceError, match="branches on the value"):
+        bool(m[..., 0] > 0)
     assert np.roll(m, 1, axis=0).inner.entries[0, 0, 0] is np.roll(m, -3 + 4, axis=-3).inner.entries[0, 0, 0]
     assert np.roll(m, 1, axis=-1).inner.entries[0, 0, 0] is m.inner.entries[0, 0, 2]
     back = np.roll(np.roll(m * m, 1, axis=1), -1, axis=1)
@@ -198,6 +200,16 @@ def test_values_at_one_site_have_the_shape_of_the_lattice() -> None:
     varied = m + np.arange(20.0).reshape(4, 5, 1)
     assert varied.shape == (4, 5, 3)
     assert len(inputs.arrays) == 1
+
+
+def test_jax_takes_a_lattice_of_numpy() -> None:
+    pytest.importorskip("jax")
+    lattice, m = model((3,)), unit(10, 3)
+    plain, made = (lattice.integrate((0, 0.5), m, step=lh.Euler(), dt=0.15, engine=e) for e in ("numpy", "jax"))
+    np.testing.assert_allclose(made.y, plain.y, rtol=0, atol=1e-13)
+    np.testing.assert_allclose(made.t, plain.t, rtol=0, atol=1e-15)
+    with pytest.raises(lh.errors.InputError, match="give t_eval"):
+        lattice.integrate((0, 1), m, step=lh.RKMK("rk45"), engine="jax")
 
 
 @pytest.mark.slow

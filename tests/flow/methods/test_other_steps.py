@@ -117,6 +117,57 @@ def test_splitting_is_explicit() -> None:
     assert calls == [5]
 
 
+def test_factors_of_a_splitting_move_the_point_to_its_end() -> None:
+    data = system("body")
+    action = lh.Action(data.field.representation)
+    local = lh.methods.Splitting().at(action, Generator(data.field, 2), data.start, np.zeros(1))
+    m, h = data.start, np.array([0.3])
+    for x in local.factors(h):
+        m = action.act(x, m)
+    np.testing.assert_allclose(m, local.point(h), rtol=0, atol=1e-15)
+    assert np.abs(m - data.start).max() > 0.01
+
+
+def test_a_step_without_an_estimate_says_so_and_has_no_cone() -> None:
+    data = system("body")
+    local = lh.Euler().at(lh.Action(data.field.representation), Generator(data.field, 2), data.start, np.zeros(1))
+    assert local.estimate_order is None and not local.is_near_cone(np.array([0.1, 2.0])).any()
+    with pytest.raises(InputError, match="no estimate"):
+        local.estimate(np.array([0.1]))
+
+
+def test_parts_that_depend_on_args_are_compared_with_psi_in_each_run() -> None:
+    """`prepares_by_psi`: what was checked for the args of one run says nothing of those of the next."""
+    parts = [lambda m, k=k: -m * np.eye(3)[k] / (k + 1) for k in range(3)]
+    field = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m, t, args: -m / args)
+    step, (first, second) = lh.methods.Splitting(parts), (np.array([1.0, 2.0, 3.0]), np.array([1.0, 2.0, 4.0]))
+    assert step.prepares_by_psi and not lh.methods.Splitting().prepares_by_psi
+    made = lh.Propagator(field, step)
+    for _ in range(2):
+        assert made((0, 1), [0.6, 0.48, 0.64], dt=0.1, args=first).status == 0
+    with pytest.raises(InputError, match="add up to"):
+        made((0, 1), [0.6, 0.48, 0.64], dt=0.1, args=second)
+
+
+@pytest.mark.parametrize("n", [1, 2, 3, 4])
+def test_taylor_steps_have_their_order_by_an_exponential_of_which_the_action_alone_is_known(n: int) -> None:
+    rho, psi = lh.adjoint(lh.so(3)), lambda m: -m / [1.0, 2.0, 3.0]
+    turn = lh.Action(rho).infinitesimal
+
+    def cayley(x: Any, m: Any) -> Any:
+        once = turn(x, m)
+        return m + (once + turn(x, once) / 2) / (1 + (x * x).sum(axis=-1, keepdims=True) / 4)
+
+    options: dict[str, Any] = {"step": lh.LieTaylor(n), "engine": "numpy"}
+    start = [0.6, 0.48, 0.64]
+    exact = lh.integrate(lh.GeneratorField(rho, psi), (0, 1), start, rtol=1e-13, atol=1e-13).y[:, -1]
+    errors = []
+    for dt in (0.1, 0.05):
+        end = lh.integrate(lh.GeneratorField(rho, psi), (0, 1), start, dt=dt, exponential=cayley, **options).y[:, -1]
+        errors.append(np.abs(end - exact).max())
+    assert 0.8 * 2**n < errors[0] / errors[1] < 1.35 * 2**n
+
+
 # -- composition -----------------------------------------------------------------------------------------
 @pytest.mark.parametrize("scheme", ["suzuki", "yoshida"])
 @pytest.mark.parametrize("order", [2, 4, 6, 8])

@@ -252,6 +252,7 @@ ONE = {
     "full_like": lambda m: np.full_like(m, 2.0) * m,
     "full_like of a series": lambda m: np.full_like(m, m[0, 1]),
     "imag": lambda m: np.imag(m * (1 + 2j)) if isinstance(m, Jet) else 2 * m,
+    "imag as an attribute": lambda m: (m * (1 + 2j)).imag if isinstance(m, Jet) else 2 * m,
     "add.reduce": lambda m: np.add.reduce(m, axis=1),
     "multiply.reduce": lambda m: np.multiply.reduce(m),
     "real": lambda m: np.asarray(m) if isinstance(m, np.ndarray) else np.real(m),

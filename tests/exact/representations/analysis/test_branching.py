@@ -18,7 +18,7 @@ from hypothesis import given, settings, strategies as st
 
 import liehom as lh
 from liehom.base.errors import CatalogError, InputError, ShapeError
-from liehom.exact.representations.analysis.branching import module_name, modules_of_size, symmetric_images
+from liehom.exact.representations.analysis.branching import module_name, symmetric_images
 from liehom.exact.representations.highest_weight.characters import weights_up_to
 from liehom.exact.representations.highest_weight.weights import weight_space
 from tests.sampling import examples

@@ -91,8 +91,8 @@ def test_invariants_are_as_many_as_the_series_says(rho: Representation) -> None:
 @pytest.mark.parametrize(
     ("above", "below"),
     [
-        ((1,), ()), ((1,), (1,)), ((1,), (1, 1, 2)), ((1, 1), (1,)), ((1, -1, 1), (2,)), ((2, 0, -3, 1), ()), ((0, -1), ()),
-        ((0, 2, -1, -2), (1, 3)), ((-1,), (2, 2)),
+        ((1,), ()), ((1,), (1,)), ((1,), (1, 1, 2)), ((1, 1), (1,)), ((1, -1, 1), (2,)), ((2, 0, -3, 1), ()),
+        ((0, -1), ()), ((0, 2, -1, -2), (1, 3)), ((-1,), (2, 2)),
     ],
 )  # fmt: skip
 def test_what_is_printed_is_the_series_and_has_no_idle_signs(above: tuple[int, ...], below: tuple[int, ...]) -> None:
