@@ -25,6 +25,15 @@ def test_the_zero_map_and_the_identity() -> None:
     assert one([1, 2, 3]).tolist() == [1, 2, 3]
 
 
+def test_maps_compose_if_the_algebras_between_are_equal() -> None:
+    turn = [[0, 1, 0], [0, 0, 1], [1, 0, 0]]
+    first, second = (lh.algebra.Homomorphism(lh.so(3), lh.so(3), turn) for _ in range(2))
+    assert first.target is not second.source
+    assert second.compose(first).compose(second) == lh.algebra.Homomorphism.identity(lh.so(3))
+    with pytest.raises(InputError, match="not the source"):
+        lh.algebra.Homomorphism.identity(lh.sl(2)).compose(first)
+
+
 def test_kernel_and_image_of_the_adjoint_representation() -> None:
     """ad: gl(2) -> gl(4) has the centre as its kernel."""
     gl2, gl4 = lh.gl(2), lh.gl(4)
