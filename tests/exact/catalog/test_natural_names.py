@@ -151,3 +151,8 @@ def test_the_command_line_reads_them(name: str) -> None:
     from liehom.cli.inputs import object_argument
 
     assert object_argument(name)
+
+
+@pytest.mark.parametrize("name", ["sp(2)/sp(1)^2", "sp(2)/sp(1)^1+sp(1)", "Sp(2)/Sp(1)^1Sp(1)", "Sp(2)^1/Sp(1)Sp(1)"])
+def test_powers_count_equal_factors(name: str) -> None:
+    assert lh.pair(name) == lh.pair("sp(2)/sp(1)+sp(1)")

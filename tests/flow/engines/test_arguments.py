@@ -55,3 +55,17 @@ def test_as_many_trajectories_as_components_do_not_share_their_times(psi: Any, e
 def test_parameters_and_times_of_as_many_trajectories_as_components_are_accepted() -> None:
     field = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m, t: -m * np.array([[1], [2], [3]]) + np.sin(t)[..., None])
     assert lh.integrate(field, (0, 1), np.eye(3)[::-1]).success
+
+
+@pytest.mark.parametrize("engine", ["numpy", "auto"])
+@pytest.mark.parametrize("wrap", [lambda x: x, lh.PerTrajectory], ids=["shared", "per trajectory"])
+def test_args_that_jax_traces_need_its_engine(engine: str, wrap: Any) -> None:
+    jax = pytest.importorskip("jax")
+    field = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m, t, args: -m * args["rate"])
+
+    def end(rate: Any) -> Any:
+        start = np.array([[0.6, 0.48, 0.64]])
+        return lh.integrate(field, (0, 1), start, dt=0.1, args={"rate": wrap(rate)}, engine=engine).y
+
+    with pytest.raises(lh.errors.InputError, match="JAX traces.*rate"):
+        jax.jit(end)(np.ones((1, 3)))
