@@ -67,5 +67,5 @@ def test_args_that_jax_traces_need_its_engine(engine: str, wrap: Any) -> None:
         start = np.array([[0.6, 0.48, 0.64]])
         return lh.integrate(field, (0, 1), start, dt=0.1, args={"rate": wrap(rate)}, engine=engine).y
 
-    with pytest.raises(lh.errors.InputError, match="JAX traces.*rate"):
+    with pytest.raises(lh.errors.InputError, match=r"JAX traces.*rate"):
         jax.jit(end)(np.ones((1, 3)))
