@@ -186,8 +186,12 @@ def ranked(count: int) -> IntegerArray:
 CHUNK = 16_384  # number of lanes, at most, that are copied in, run, and copied out at once
 SMALL = 1024  # number of lanes up to which memory is kept from call to call
 ROOM = 64  # rows of the path, at first, of steps whose number is not known
-LAST_STOP, FIRST_STOP, ORIGIN, BEGIN, END_STEP, TOTAL, STEP_SIZE = (
-    PLACES[name] for name in ("last_stop", "first_stop", "origin", "begin", "end", "total", "step_size")
+SORTED = 256  # lanes from which on those with as many steps left are put into one block
+FIRST_STEPS = 24  # steps after which lanes are sorted first
+MOVED, ENTERED = 200.0, 3  # to move a number, in operations; to enter the machine code again, in steps
+TINY = float(np.finfo(np.float64).tiny)
+LAST, LAST_STOP, FIRST_STOP, ORIGIN, BEGIN, END_STEP, TOTAL, STEP_SIZE = (
+    PLACES[name] for name in ("last", "last_stop", "first_stop", "origin", "begin", "end", "total", "step_size")
 )
 OF_A_CALL = ("rest", "end", "direction", "tiny", "latest", "gap")
 """The numbers of a call that a kernel may take, besides args."""
@@ -393,7 +397,8 @@ class Plan:
                 return None
             state[self.taken], path = total, path if kept is None else path.copy()
         else:
-            path = self._to_the_end(memory, count, begin, numbers.max_steps)
+            sorts = count >= SORTED and self.kernel.width > 1 and not self.keeps
+            path = (self._by_pace if sorts else self._to_the_end)(memory, count, begin, numbers.max_steps)
         if path is None or (self.trouble and (state[self.trouble, :count] > 0).any()):
             return None
         if y is not None:
@@ -443,6 +448,44 @@ class Plan:
             if slot is not None:
                 self.slots[slot] = number
         return values
+
+    def _by_pace(self, memory: Memory, count: int, begin: float, most: float) -> Array | None:
+        """Run the kernel until all lanes are at the end, those with as many steps left in one block; the states.
+
+        A block takes as long as its slowest lane. How many steps a lane has left follows from the time that it has
+        come to. Lanes are sorted as long as the steps that this saves are worth it.
+        """
+        state, start, integers, width = memory.state, memory.start, memory.integers, self.kernel.width
+        limit, made, steps, lanes = max(1, OPERATIONS_PER_CALL // (self.work * count)), 0, FIRST_STEPS, np.arange(count)
+        last = int(integers[LAST_STOP])
+        out, end = memory.arrays["out"][: last + 1], memory.arrays["stops"][last]
+        held = [state, start, *out, *([memory.rows] if self.kernel.lane_constants else [])]
+        cost = count * (ENTERED + MOVED / self.work * sum(map(len, held)))
+        while True:
+            integers[BEGIN], integers[END_STEP] = 0, min(steps, limit)
+            self.kernel.run(memory.address)
+            alive, t = state[self.alive, :count], state[self.time, :count]
+            going = int(np.count_nonzero(alive > 0))
+            if not alive.all() or (going and state[self.taken, :count].max() >= most):
+                return None
+            if not going:
+                break
+            made += min(steps, limit)
+            left = np.where(alive > 0, made * np.abs(end - t) / (np.abs(t - begin) + TINY), 0.0)
+            total, slowest = left.sum(), np.maximum.reduceat(left, np.arange(0, count, width)).sum()
+            if steps < limit and width * slowest - total > cost:
+                order = np.argsort(-left)
+                lanes, integers[LAST] = lanes[order], -(-going // width)
+                for array in held:
+                    array[:, :count] = array.take(order, 1)
+            steps = int(total / (2 * going)) + 1
+            if steps * count < 3 * cost:
+                steps = limit
+        integers[LAST] = state.shape[1] // width
+        back = np.argsort(lanes)
+        for array in (state, *out):
+            array[:, :count] = array.take(back, 1)
+        return state
 
     def _to_the_end(self, memory: Memory, count: int, begin: float, most: float) -> Array | None:
         """Run the kernel until all lanes are at the end, by steps of their own sizes; the path."""

@@ -449,6 +449,37 @@ def test_an_ensemble_in_pieces_is_the_ensemble(
     assert engine.solved == 1
 
 
+@pytest.mark.parametrize("count", [256, 401])
+@pytest.mark.parametrize("span", [(0.0, 9.0), (9.0, 0.0)], ids=str)
+def test_lanes_that_are_sorted_by_pace_are_those_in_their_order(
+    span: tuple[float, float], count: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    field = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m, t, args: -m * args["rates"] * np.cos(t)[..., None])
+    args = {"rates": lh.PerTrajectory(np.random.default_rng(2).uniform(0.3, 9.0, (count, 1)) * [1.0, 2.0, 4.0])}
+    made, engine = propagator(field, lh.Taylor(8))
+    times = [0.0, 2.0, 2.1, 7.0] if span[1] else [9.0, 7.0, 2.1, 2.0]
+    options: dict[str, Any] = {"rtol": 1e-8, "t_eval": times, "args": args}
+    points = sphere(count)
+    for _ in range(2):  # the second of which says whether the field is stiff
+        made(span, points[::-1], **options)
+    solved, orders = engine.solved, list[Any]()
+    with monkeypatch.context() as m:
+        m.setattr(plan, "SORTED", count + 1)
+        m.setattr(np, "argsort", lambda *_: orders.append(_))
+        plain = made(span, points, **options)
+    assert not orders
+    monkeypatch.setattr(plan, "MOVED", 0.0)
+    argsort = np.argsort
+    monkeypatch.setattr(np, "argsort", lambda x: orders.append(argsort(x)) or orders[-1])
+    again = made(span, points, **options)
+    assert engine.solved == solved and len(orders) > 2 and (orders[0] != np.arange(count)).any()
+    assert_same(again, plain)
+    monkeypatch.undo()
+    with pytest.warns(RuntimeWarning, match="max_steps"):
+        made(span, points, max_steps=40, **options)
+    assert engine.solved == solved + 1
+
+
 def test_a_small_ensemble_in_threads_is_the_ensemble(monkeypatch: pytest.MonkeyPatch) -> None:
     made, engine = propagator(step=lh.Taylor(8))
     points = sphere(20)

@@ -53,9 +53,9 @@ MOST = 4  # degree of the polynomials that are compared
 
 
 @cache
-def action(g: LieAlgebra, i: int) -> list[tuple[sympy.Symbol, sympy.Expr]]:
-    """The basis elements y, by their names, with [e_i, y]."""
-    names, n = sympy.symbols(g.basis_names), g.dimension
+def action(g: LieAlgebra, basis_names: tuple[str, ...], i: int) -> list[tuple[sympy.Symbol, sympy.Expr]]:
+    """The basis elements y, by their names, which equal algebras need not share, with [e_i, y]."""
+    names, n = sympy.symbols(basis_names), g.dimension
     images = [g.bracket([int(i == k) for k in range(n)], [int(j == k) for k in range(n)]) for j in range(n)]
     sums = (sum(sympy.Rational(str(c)) * y for c, y in zip(image, names, strict=True)) for image in images)
     return list(zip(names, sums, strict=True))
@@ -63,7 +63,7 @@ def action(g: LieAlgebra, i: int) -> list[tuple[sympy.Symbol, sympy.Expr]]:
 
 def derived(g: LieAlgebra, f: sympy.Expr, i: int) -> sympy.Expr:
     """ad e_i of a polynomial in the names of the basis."""
-    return sympy.expand(sum(sympy.diff(f, y) * image for y, image in action(g, i)))
+    return sympy.expand(sum(sympy.diff(f, y) * image for y, image in action(g, g.basis_names, i)))
 
 
 @pytest.mark.parametrize(("g", "degrees"), KNOWN, ids=[str(g.name) for g, _ in KNOWN])
