@@ -289,8 +289,8 @@ class Plan:
     def _solution(
         self, task: Task, args: Pytree, most: float, state: Array | bytes, path: Array, y: Array
     ) -> Solution | None:
-        """The solution from the largest number of steps, states (k, L) or their bytes, the path (N + 2, ..., j + 1), and
-        points at output times; None if an ordinary call should say more of it.
+        """The solution from the largest number of steps, states (k, L) or their bytes, the path (N + 2, ..., j + 1),
+        and points at output times; None if an ordinary call should say more of it.
         """
         n, log, start, stops = self.n, None, None, task[2]
         if not self.is_judged and most >= MIN_STEPS:
