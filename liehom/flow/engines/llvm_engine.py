@@ -182,7 +182,7 @@ class CodeStore:
     def graph(self, run: Run, dimension: int, points: Array) -> tuple[Hashable, StepGraph]:
         """The graph of a step on orbits of a dimension, traced if it is not known, and its key."""
         o = run.options
-        uniform = o.dt is not None and bool((o.dt == np.max(o.dt, initial=0.0)).all())
+        uniform = self.code.in_lockstep and o.dt is not None and bool((o.dt == np.max(o.dt, initial=0.0)).all())
         args, lead = run.field.args, len(run.shape)
         bounds = o.dt is None and (run.limits.moves, run.limits.gap is None, is_unbounded(run.limits.gap))
         key = (dimension, uniform, bounds, o.nominal, run.step.trace_key, frame_key(run.action), args_form(args, lead))
@@ -197,7 +197,7 @@ class CodeStore:
                 )  # fmt: skip
 
             raised = run.step.order > run.step.base_order and not o.nominal  # such steps have a clock
-            graph = traced(stops=not (uniform and self.code.in_lockstep) or raised)
+            graph = traced(stops=not uniform or raised)
             if graph.reached is None and graph.elapsed is not None:
                 graph = traced(stops=True)
             self.graphs[key] = with_guard(graph, run.action, dimension)
