@@ -158,7 +158,7 @@ def called(source: Callable[..., Any], form: CallForm, timed: bool, *args: Pytre
     timed = timed or form.time_needed
     if not (args and form.args_keyword) and not (timed and form.time_keyword):
         if not timed:
-            return lambda m, t: source(m, *args)
+            return (lambda m, t: source(m, *args)) if args else lambda m, t: source(m)  # quicker without a tuple
         return (lambda m, t: source(m, t, *args)) if args else source
     time, fixed = str(form.time), {str(form.args): x for x in args}
     return (lambda m, t: source(m, **{time: t}, **fixed)) if timed else (lambda m, t: source(m, **fixed))

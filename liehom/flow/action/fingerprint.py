@@ -21,6 +21,7 @@ from types import CodeType, FunctionType, MethodType, ModuleType
 from typing import Any, TypeAlias, final
 
 import numpy as np
+from numpy import asarray
 
 from liehom.base.disk import digest
 from liehom.base.pytrees import numbers_of
@@ -328,7 +329,7 @@ class Watch(Parts):
         if Parts.changed(self):  # quicker than super()
             return True
         try:
-            return self._known is not None and np.asarray(self._read()).tobytes() != self._known
+            return self._known is not None and asarray(self._read()).tobytes() != self._known
         except Exception:  # noqa: BLE001 - of the user's function
             return False
 

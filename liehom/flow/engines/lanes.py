@@ -152,13 +152,17 @@ class LaneSteps(NamedTuple):
     halted: IntegerArray | None = None  # the row of `path` in which a terminal event ends the lane, -1 for none
 
 
+STATE = len(PLACES) + 2  # where the state begins in a memory
+
+
 @final
 class Memory:
-    """Memory of a kernel for some lanes: a block of state and start, and the argument as integers and as floats."""
+    """Memory of a kernel for some lanes: the argument as integers and as floats, two stops, and state and start."""
 
     def __init__(self, kernel: Kernel, lanes: int, constants: Array) -> None:
         first = kernel.packed(lanes, {"alive": 1.0, **lowest_numbers(kernel.graph)})
-        self.first, self.block = np.array([first, first]), np.array([first, first])
+        self.first, whole = np.array([first, first]), np.zeros(STATE + 2 * first.size)
+        self.block = whole[STATE:].reshape(self.first.shape)
         self.state, self.start = self.block[0], self.block[1, : kernel.graph.size]
         # views of the state, then of the start, as lists of numbers: for a few numbers they are quicker than arrays
         self.cells = self.block.reshape(-1).data.cast("B").cast("d")
@@ -166,21 +170,24 @@ class Memory:
         self.views: dict[str, memoryview[float]] = {}
         self.points: Array = self.block[:, : kernel.graph.size, :lanes].transpose(0, 2, 1)
         self.rows: Array = np.ones((max(1, len(kernel.lane_constants)), self.state.shape[1]))
-        argument = kernel.argument(self.state, start=self.start, rows=self.rows, constants=constants)
-        self.integers, self.floats = argument.data, argument.data.cast("B").cast("d")
-        self.address: int = argument.ctypes.data
+        argument = whole[: len(PLACES)].view(np.int64)
+        argument[:] = kernel.argument(self.state, start=self.start, rows=self.rows, constants=constants)
+        self.whole, self.integers = whole.data.cast("B"), argument.data
+        self.floats = self.whole.cast("d")
+        self.address: int = whole.ctypes.data
         self.arrays: dict[str, Array] = dict.fromkeys(["stops", "out", "path"], np.zeros(0))
-        self.room("stops", 2)
+        self._use("stops", whole[len(PLACES) : STATE])
         self.room("out", 2, kernel.graph.size, self.state.shape[1])
 
     def room(self, name: str, rows: int, *shape: int) -> Array:
         """The array of a name, with at least as many rows."""
-        array = self.arrays[name]
-        if len(array) < rows:
-            array = self.arrays[name] = np.empty((rows, *shape))
-            self.views[name] = array.reshape(-1).data.cast("B").cast("d")
-            self.integers[PLACES[name]] = array.ctypes.data
-        return array
+        if len(self.arrays[name]) < rows:
+            self._use(name, np.empty((rows, *shape)))
+        return self.arrays[name]
+
+    def _use(self, name: str, array: Array) -> None:
+        self.arrays[name], self.views[name] = array, array.reshape(-1).data.cast("B").cast("d")
+        self.integers[PLACES[name]] = array.ctypes.data
 
     def path(self, steps: int, size: int) -> Array:
         """The array of the path, with a row for the initial points before those of the steps."""

@@ -7,10 +7,11 @@ before that step, which the automaton then makes or diagnoses.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Mapping
+from collections.abc import Callable, Hashable, Iterable, Mapping
 from typing import Any, final
 
 import numpy as np
+import numpy.typing as npt
 
 from liehom.base.errors import InputError
 from liehom.base.pytrees import leaves
@@ -37,6 +38,7 @@ from liehom.flow.engines.lanes import (
 from liehom.flow.engines.lattice import LatticeStep, lattice_step, solved_on_lattice
 from liehom.flow.engines.plan import (
     CHUNK,
+    FLOAT,
     KINDS,
     Numbers,
     Plan,
@@ -104,17 +106,20 @@ class LlvmEngine:
             self._keep_plan(problem, runs[0], solution)
         return solution
 
-    def again(self, t_span: object, y0: object, options: Mapping[str, Any], args: Pytree = None) -> Solution | None:
+    def again(
+        self, t_span: Iterable[Any], y0: npt.ArrayLike, options: Mapping[str, Any], args: Pytree = None
+    ) -> Solution | None:
         """The solution of a call of a form that there was before; None if it needs a closer look."""
         if not self._plans:
             return None
         try:
-            begin, end = t_span  # type: ignore[misc]
-            if not type(begin) is type(end) is float:  # type: ignore[has-type]
-                if type(begin) not in KINDS or type(end) not in KINDS:  # type: ignore[has-type]
+            begin, end = t_span.tolist() if type(t_span) is np.ndarray else t_span
+            if not type(begin) is type(end) is float:
+                if type(begin) not in KINDS or type(end) not in KINDS:
                     return None
-                begin, end = float(begin), float(end)  # type: ignore[has-type]
-            points, times, key = floats("the start", y0), None, None
+                begin, end = float(begin), float(end)
+            points = y0 if type(y0) is np.ndarray and y0.dtype is FLOAT else floats("the start", y0)
+            times = key = None
             if "t_eval" in options or "events" in options:
                 options = dict(options)
                 times, events = options.pop("t_eval", None), options.pop("events", None)
@@ -136,7 +141,7 @@ class LlvmEngine:
                     self._latest = form, numbers, plan
             if plan is None or self._watch.changed():  # type: ignore[union-attr]
                 return None
-            return plan(numbers, points, begin, end, times, args, found)
+            return plan.call(numbers, points, begin, end, times, args, found)
         except (TypeError, ValueError, OverflowError):  # not numbers
             return None
 
@@ -177,7 +182,7 @@ class CodeStore:
     def graph(self, run: Run, dimension: int, points: Array) -> tuple[Hashable, StepGraph]:
         """The graph of a step on orbits of a dimension, traced if it is not known, and its key."""
         o = run.options
-        uniform = o.dt is not None and bool((o.dt == np.max(o.dt, initial=0.0)).all())
+        uniform = self.code.in_lockstep and o.dt is not None and bool((o.dt == np.max(o.dt, initial=0.0)).all())
         args, lead = run.field.args, len(run.shape)
         bounds = o.dt is None and (run.limits.moves, run.limits.gap is None, is_unbounded(run.limits.gap))
         key = (dimension, uniform, bounds, o.nominal, run.step.trace_key, frame_key(run.action), args_form(args, lead))
@@ -192,7 +197,7 @@ class CodeStore:
                 )  # fmt: skip
 
             raised = run.step.order > run.step.base_order and not o.nominal  # such steps have a clock
-            graph = traced(stops=not (uniform and self.code.in_lockstep) or raised)
+            graph = traced(stops=not uniform or raised)
             if graph.reached is None and graph.elapsed is not None:
                 graph = traced(stops=True)
             self.graphs[key] = with_guard(graph, run.action, dimension)

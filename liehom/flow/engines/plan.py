@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Hashable, Mapping, Sequence
+from collections.abc import Hashable, Sequence
 from dataclasses import replace
-from functools import lru_cache, partial
+from functools import lru_cache
 from itertools import pairwise
 from math import ceil, inf
-from typing import Any, NamedTuple, TypeAlias, final
+from operator import itemgetter
+from struct import Struct
+from typing import Any, Literal, NamedTuple, TypeAlias, final
 
 import numpy as np
 
@@ -115,7 +117,7 @@ def _stops_of(times: Array, begin: float, end: float) -> tuple[Array, int, int] 
     """Output times with the slice of those within a span; None if they are not in order."""
     if times.ndim != 1 or not len(times):
         return None
-    first, last = float(times[0]), float(times[-1])
+    first, last = times.item(0), times.item(-1)
     if not (begin <= first <= last <= end if end > begin else begin >= first >= last >= end):
         return None
     if len(times) > 1 and not (np.diff(times) * (1 if end > begin else -1) > 0).all():
@@ -130,6 +132,8 @@ def form_of(form: Hashable, numbers: Numbers, args: Sequence[Leaf] | None) -> Ha
 
 def _form_of_leaf(path: str, x: object) -> Hashable:
     """The place, the type and the shape of a leaf; a number is not of the type of anything that is refused."""
+    if type(x) is np.ndarray:
+        return path, x.dtype, x.shape
     inner = x.value if isinstance(x, PerTrajectory) else x
     return path, type(x), type(inner), getattr(inner, "dtype", None), getattr(inner, "shape", None)
 
@@ -183,6 +187,7 @@ def ranked(count: int) -> IntegerArray:
 # have the largest dimension. A call whose lanes do not all come to the end, or whose steps have something to say, is
 # made again in the ordinary way.
 
+WRITTEN = 8 * PLACES["begin"]  # from where on a call of one trajectory writes its memory
 CHUNK = 16_384  # number of lanes, at most, that are copied in, run, and copied out at once
 SMALL = 1024  # number of lanes up to which memory is kept from call to call
 ROOM = 64  # rows of the path, at first, of steps whose number is not known
@@ -193,20 +198,15 @@ TINY = float(np.finfo(np.float64).tiny)
 LAST, LAST_STOP, FIRST_STOP, ORIGIN, BEGIN, END_STEP, TOTAL, STEP_SIZE = (
     PLACES[name] for name in ("last", "last_stop", "first_stop", "origin", "begin", "end", "total", "step_size")
 )
-OF_A_CALL = ("rest", "end", "direction", "tiny", "latest", "gap")
-"""The numbers of a call that a kernel may take, besides args."""
-NO_VALUES: Mapping[str, Any] = {}
+OF_A_CALL = ("checks", "rest", "end", "direction", "tiny", "latest", "gap", *Numbers._fields)
+"""The numbers of a call that a kernel may take, before those of args."""
 TROUBLE = frozenset(["unkept", "failed", "near", "short", "conservation_short", "conservation_missed"])
 """Numbers of steps that are 0, or -inf, if the steps are as they should be."""
 
 
-Task: TypeAlias = tuple[Numbers, Array, tuple[Array, int, int] | None, float, float, Any, float, Mapping[str, Any], int]
+Task: TypeAlias = tuple[Numbers, Array, tuple[Array, int, int] | None, float, float, Any, float, tuple[Any, ...], int]
 """Numbers of a call, points (..., N), output times, begin and end of the span, sizes with their sign, the direction,
-numbers of args by name, and the number of steps in lockstep, 0 for steps of their own sizes."""
-
-Made: TypeAlias = tuple[float, Any, Any, Any]
-"""The largest number of steps, states (k, L) or the bytes of one, the path (N + 2, ..., j + 1) of points, times and
-signed sizes, and what there is at output times (..., N, k)."""
+numbers in the order of `Plan.names`, and the number of steps in lockstep, 0 for steps of their own sizes."""
 
 
 @final
@@ -227,35 +227,36 @@ class Plan:
         self.kept = [x for x in kernel.names if self.lanes == 1 or x in recorded or x in ("count", "tries")]
         self.kept_rows = [self.place[name] for name in self.kept]
         self.ranked = ranked(self.lanes) if step.uses_isotropy else None
-        self.constants: Array = np.zeros(max(1, len(kernel.run_constants)))
-        self.slots = self.constants.data.cast("B").cast("d")
-        self.slot = {name: i for i, name in enumerate(kernel.run_constants)}
-        self.own = [(i, OF_A_CALL.index(name)) for name, i in self.slot.items() if name in OF_A_CALL]
-        self.bounds = [(i, name) for name, i in self.slot.items() if name in BOUNDS]
-        self.numbers: Numbers | None = None  # from which the bounds in the memory are
-        self.constants[[i for name, i in self.slot.items() if name == "checks"]] = 1.0
-        names = () if problem.args is None else arg_values(problem.args, len(self.shape))
-        self.names = [(name, self.slot.get(name)) for name in names]
+        wanted = [*kernel.run_constants, "checks", "checks"]  # of one name itemgetter would make no tuple
+        self.names = [*OF_A_CALL, *arg_values(problem.args, len(self.shape))]
+        self.constants: Array = np.ones(len(wanted))
+        self.slots, self.pack_constants = self.constants.data, Struct(f"{len(wanted)}d").pack_into
+        self.chosen = itemgetter(*map(self.names.index, wanted))
+        self.is_fixed, self.has_gap = {*wanted} == {"checks"} and problem.args is None, "gap" in wanted
         self.keeps = options.t_eval is None or options.dense_output or events is not None
         memory = Memory(kernel, self.lanes, self.constants) if self.lanes <= SMALL else None
         self.free = [memory]  # the memory, unless a call is using it
         self.is_alone = not self.shape and kernel.width == 1 and not kernel.lane_constants
-        if memory is not None:  # of one trajectory: point, initial point, the path as it is and as columns
-            cells, begin = memory.cells, len(kernel.names)
-            self.first, self.start, self.stops = cells[: self.n], cells[begin : begin + self.n], memory.views["stops"]
-            self.path: Any = None
+        if memory is not None and self.is_alone:
+            # a call of one trajectory writes at once from `begin` to the initial point, and the first row of the path
+            known, point = 2 if self.lockstep else 5, f"{8 * self.n}s"
+            self.later = memory.fresh[self.n + known : len(kernel.names)].tobytes()
+            self.pack = Struct(f"3q4d{point}{known}d{len(self.later)}s{point}").pack_into
+            self.pack_first = Struct(point + "d").pack_into
+            self.room = -1  # rows of the path in memory, as far as they are known here
         self.is_judged, self.rows = options.dt is not None, ROOM
         self.most = max(1, OPERATIONS_PER_CALL // work)  # steps of a call
         # rows of a path, and output times, up to which there is one piece in the memory that is kept
         row = max(8 * (self.n + 2) / PATH_BYTES_PER_CALL, work / OPERATIONS_PER_CALL, 1 / LANE_STEPS_FOR_THREADS)
         self.short = int(1 / (row * self.lanes))
 
-    def __call__(
+    def call(
         self, numbers: Numbers, points: Array, begin: float, end: float, times: Array | None,
         args: Pytree, found: Sequence[Leaf] | None,
     ) -> Solution | None:  # fmt: skip
         """The solution, or None if the call needs a closer look."""
-        length, size, rest, total = abs(end - begin), numbers.dt, ROUND_OFF * max(abs(begin), abs(end)), 0
+        length, size, first, last, total = abs(end - begin), numbers.dt, abs(begin), abs(end), 0
+        rest = ROUND_OFF * (first if first > last else last)
         direction = 1.0 if end > begin else -1.0
         if not 0.0 < length < inf or (numbers.shape and numbers.shape != self.shape):
             return None
@@ -277,73 +278,81 @@ class Plan:
         except IndexError:  # another thread makes a call
             return None
         try:
-            values = self._take(numbers, begin, end, rest, direction, found) if self.own or found else NO_VALUES
+            values = () if self.is_fixed else self._take(numbers, begin, end, rest, direction, found)
             task = numbers, points, stops, begin, end, size, direction, values, total
             is_short = (total or self.keeps * self.rows) <= self.short and (times is None or len(times) <= self.short)
-            made = self._alone(task, memory) if memory and self.is_alone and is_short else None
-            made = self._in_pieces(task, memory if is_short else None) if made is None else made
-            return None if made is None else self._solution(task, made, args)
+            if is_short and self.is_alone and memory:
+                solution = self._alone(task, args, memory)
+                if solution is not False:
+                    return solution
+            made = self._in_pieces(task, memory if is_short else None)
+            return None if made is None else self._solution(task, args, *made)
         finally:
             self.free.append(memory)
 
-    def _solution(self, task: Task, made: Made, args: Pytree) -> Solution | None:
-        """The solution of what was made; None if an ordinary call should say more of it."""
-        _, points, stops, begin, end, _, direction, values, _ = task
-        (most, state, path, y), n, log, start = made, self.n, None, None
+    def _solution(
+        self, task: Task, args: Pytree, most: float, state: Array | bytes, path: Array, y: Array
+    ) -> Solution | None:
+        """The solution from the largest number of steps, states (k, L) or their bytes, the path (N + 2, ..., j + 1),
+        and points at output times; None if an ordinary call should say more of it.
+        """
+        n, log, start, stops = self.n, None, None, task[2]
         if not self.is_judged and most >= MIN_STEPS:
             self.is_judged = True  # an ordinary call says whether the field is stiff
             return None
         if self.events is not None:
-            values = {**values, "length": abs(end - begin), "direction": direction}
+            values = {**dict(zip(self.names, task[7], strict=False)), "length": abs(task[4] - task[3])}
+            values["direction"] = task[6]
             if (log := self.events(path, values)) is None:
                 return None
-        times = path[n] if stops is None else stops[0].copy()
-        y = (path[:n].transpose(self.axes) if self.shape else path[:n]) if stops is None else y
-        if self.ranked is not None:  # what the other entries need is copied: points may change
-            start = points.reshape(self.lanes, n).copy()
-        return solution_of(times, y, END, partial(self._others, task, args, state, path, start, log))
-
-    def _alone(self, task: Task, memory: Memory) -> Made | None:
-        """States and path of one trajectory, by few operations; None if the path has no room, or if a step fails."""
-        numbers, points, stops, begin, end, size, _, _, total = task
-        cells, integers, n = memory.cells, memory.integers, self.n
-        path: Any = None
-        cells[:] = memory.fresh
-        self.first[:] = self.start[:] = point = points.data
         if stops is None:
-            self.stops[0] = self.stops[1] = end
+            times, y = path[n], path[:n].transpose(self.axes) if self.shape else path[:n]
         else:
-            self._put(stops, memory, end)
-        memory.floats[ORIGIN] = begin
+            times = stops[0].copy()
+        if self.ranked is not None:  # what the other entries need is copied: points may change
+            start = task[1].reshape(self.lanes, n).copy()
+        return solution_of(times, y, END, (self._others, task, args, state, path, start, log))
+
+    def _alone(self, task: Task, args: Pytree, memory: Memory) -> Solution | Literal[False] | None:
+        """The solution of one trajectory, by few operations; False if the path has no room, or if a step fails."""
+        numbers, points, stops, begin, end, size, _, _, total = task
+        path: Any = None
+        y: Any = None
+        cells, n, point = memory.cells, self.n, points.tobytes()
+        rows = total or (self.rows if self.keeps else self.most)
         if total:
-            integers[END_STEP] = integers[TOTAL] = total
-            memory.floats[STEP_SIZE] = size
+            self.pack(memory.whole, WRITTEN, 0, rows, rows, begin, size, end, end, point, 1.0, rows, self.later, point)
         else:
-            integers[BEGIN], integers[END_STEP] = 0, self.rows if self.keeps else self.most
-            cells[self.time], cells[self.size] = begin, size
+            state = 1.0, 0.0, begin, 0.0, size
+            self.pack(memory.whole, WRITTEN, 0, rows, 0, begin, 0.0, end, end, point, *state, self.later, point)
+        if stops is not None:
+            self._put(stops, memory, end)
         if self.keeps:
-            path = memory.path(total or self.rows, n + 2)
-            if path is not self.path:
-                self.path, self.head, self.columns = path, memory.views["path"][: n + 1], path[:0, :, 0].T
-            self.head[:n], self.head[n] = point, begin
+            if rows > self.room:
+                self.room, self.path, self.columns = rows, memory.path(rows, n + 2), dict[int, Array]()
+                self.row = memory.views["path"]
+            self.pack_first(self.row, 0, point, begin)
         self.kernel.run(memory.address)
         left, most = cells[self.alive], total or int(cells[self.taken])
         failed = left <= 0 if total else left >= 0 or most >= numbers.max_steps
         if failed or (self.trouble and any([cells[i] > 0 for i in self.trouble])):  # noqa: C419 - quicker
-            return None
-        cells[self.taken] = most
-        if path is not None:
-            rows = total or integers[BEGIN]
-            if self.columns.shape[1] != rows + 1:
-                self.columns = self.path[: rows + 1, :, 0].T
-            path = self.columns.copy()
+            return False
+        if self.keeps:
+            rows = total or memory.integers[BEGIN]
+            columns = self.columns.get(rows)
+            if columns is None:
+                columns = self.path[: rows + 1, :, 0].T
+                if rows <= ROOM:
+                    self.columns[rows] = columns
+            path = columns.copy()
             if rows > most:  # some rows are not steps
                 path[n + 1, 0] = 1.0
                 path = path[:, path[n + 1] != 0]
-        y = None if stops is None else memory.arrays["out"][: len(stops[0]), :, 0].T.copy()
-        return most, cells.tobytes(), path, y
+        if stops is not None:
+            y = memory.arrays["out"][: len(stops[0]), :, 0].T.copy()
+        return self._solution(task, args, most, cells.tobytes(), path, y)
 
-    def _in_pieces(self, task: Task, memory: Memory | None) -> Made | None:
+    def _in_pieces(self, task: Task, memory: Memory | None) -> tuple[float, Array, Any, Any] | None:
         """States and paths of the lanes in pieces, in threads if they are many; None if one of them fails."""
         stops, total, n = task[2], task[-1], self.n
         rows = total if self.lockstep or not self.keeps else self.rows
@@ -372,8 +381,8 @@ class Plan:
         points = points.reshape(self.lanes, self.n)[lanes]
         memory = Memory(self.kernel, len(points), self.constants) if kept is None else kept  # pieces run in threads
         count, n, state, integers = len(points), self.n, memory.state, memory.integers
-        for row, number in zip(memory.rows, self.kernel.lane_constants, strict=False):
-            row[:count] = values[number.name][lanes] if isinstance(number, LaneConstant) else number(points)
+        for row, f in zip(memory.rows, self.kernel.lane_constants, strict=False):
+            row[:count] = values[self.names.index(f.name)][lanes] if isinstance(f, LaneConstant) else f(points)
         memory.cells[:] = memory.fresh
         memory.points[:] = points
         if not total:
@@ -408,13 +417,16 @@ class Plan:
     def _put(self, stops: tuple[Array, int, int], memory: Memory, end: float) -> None:
         """Give a kernel output times and the end, and take the points at the begin."""
         times, first, last = stops
-        out, _ = memory.room("out", last + 2, *memory.start.shape), memory.room("stops", last + 2)
+        if len(memory.views["stops"]) < last + 2:
+            memory.room("stops", last + 2)
+            memory.room("out", last + 2, *memory.start.shape)
         places = memory.views["stops"]
-        places[:last] = times.data[:last]
+        if last:
+            places[:last] = times.data[:last]
         places[last] = places[last + 1] = end
         memory.integers[LAST_STOP], memory.integers[FIRST_STOP] = last, first
         if first:
-            out[0] = memory.start
+            memory.arrays["out"][0] = memory.start
             memory.state[[self.place[name] for name in ("stop", "kept") if name in self.place]] = 1
 
     def _chunk(self, rows: int) -> int:
@@ -429,25 +441,16 @@ class Plan:
 
     def _take(
         self, numbers: Numbers, begin: float, end: float, rest: float, direction: float, found: Sequence[Leaf] | None
-    ) -> Mapping[str, Any]:
-        """Take over the numbers of a call as constants of the run; returns those of args by name."""
-        if numbers is not self.numbers:
-            self.numbers = numbers
-            for place, name in self.bounds:
-                self.slots[place] = getattr(numbers, name)
+    ) -> tuple[Any, ...]:
+        """The numbers of a call, of which the constants of the run are taken."""
         tiny = rest if numbers.dt is not None or rest > numbers.min_step else numbers.min_step
-        gap = gap_of(numbers.looks, end - begin, self.problem.field) if "gap" in self.slot else None
-        known = rest, end, direction, tiny, abs(begin) + abs(end) + 1.0, gap or 0.0  # see bounds_of
-        for place, i in self.own:
-            self.slots[place] = known[i]
-        if found is None:
-            return NO_VALUES
-        values: dict[str, Any] = {}
-        for (name, slot), number in zip(self.names, numbers_in(found, len(self.shape)), strict=True):
-            values[name] = number
-            if slot is not None:
-                self.slots[slot] = number
-        return values
+        gap = gap_of(numbers.looks, end - begin, self.problem.field) if self.has_gap else None
+        latest = abs(begin) + abs(end) + 1.0  # see bounds_of
+        known: tuple[Any, ...] = (1.0, rest, end, direction, tiny, latest, gap) + numbers  # noqa: RUF005 - quicker
+        if found is not None:
+            known += (*numbers_in(found, len(self.shape)),)
+        self.pack_constants(self.slots, 0, *self.chosen(known))
+        return known
 
     def _by_pace(self, memory: Memory, count: int, begin: float, most: float) -> Array | None:
         """Run the kernel until all lanes are at the end, those with as many steps left in one block; the states.

@@ -63,7 +63,7 @@ def numbers_in(found: Sequence[Leaf], lead: int) -> list[Any]:
         if isinstance(x, PerTrajectory):
             numbers += list(x.value.reshape(int(np.prod(x.value.shape[:lead], dtype=int)), -1).T)
         else:
-            numbers += np.ravel(x).tolist()
+            numbers += (x if type(x) is np.ndarray else np.asarray(x)).reshape(-1).tolist()
     return numbers
 
 

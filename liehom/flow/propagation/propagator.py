@@ -295,9 +295,10 @@ class Propagator:
         if self.step is not None:
             return self.step, self.engine
         wanted = dt is None, rtol, atol
-        is_plain = isinstance(rtol, float) and isinstance(atol, float)
-        if is_plain and wanted in self._choices:
+        try:
             return self._choices[wanted]
+        except (KeyError, TypeError):  # an array is not hashable
+            is_plain = isinstance(rtol, float) and isinstance(atol, float)
         if self._without_series is not None:
             step = self._without_series
         elif self._new_engine is None and self._engines:

@@ -267,8 +267,8 @@ class Solution(Displayed):
     nlu: int = field(default=0)
     # makes what `sol` would be with dense output, for plots; neither written to files nor pickled
     _steps: Callable[[], DenseSolution] | None = field(default=None, init=False)
-    # makes the entries that are not there yet
-    _others: Callable[[], Mapping[str, object]] | None = field(default=None, init=False)
+    # a function that makes the entries that are not there yet, and its arguments
+    _others: tuple[Any, ...] | None = field(default=None, init=False)
 
     if not TYPE_CHECKING:
 
@@ -276,7 +276,8 @@ class Solution(Displayed):
             others = None if name == "_others" else self._others
             if others is None:
                 raise AttributeError(f"a Solution has no entry {name!r}", name=name, obj=self)
-            for key, value in others().items():
+            make, *given = others
+            for key, value in make(*given).items():
                 object.__setattr__(self, key, value)
             object.__setattr__(self, "_others", None)
             return getattr(self, name)
@@ -381,17 +382,18 @@ class Solution(Displayed):
         return "\n".join(f"{name:>{width}}: {_summary_entry(self[name], width + 2)}" for name in shown)
 
 
-def solution_of(t: Array, y: Array, status: int, others: Callable[[], Mapping[str, object]]) -> Solution:
-    """A solution whose other entries are made when one of them is asked for."""
-    solution = object.__new__(Solution)
-    _put_t(solution, t)
-    _put_y(solution, y)
-    _put_status(solution, status)
-    _put_others(solution, others)
-    return solution
+class _Draft(Displayed):
+    """A solution while its entries are written."""
+
+    __slots__ = Solution.__slots__
 
 
-_put_t, _put_y, _put_status, _put_others = (vars(Solution)[x].__set__ for x in ("t", "y", "status", "_others"))
+def solution_of(t: Array, y: Array, status: int, others: tuple[Any, ...]) -> Solution:
+    """A solution whose other entries a function of arguments, all in a tuple, makes when one of them is asked for."""
+    draft: Any = _Draft()
+    draft.t, draft.y, draft.status, draft._others = t, y, status, others
+    draft.__class__ = Solution
+    return draft
 
 
 def with_steps(solution: Solution, steps: Callable[[], DenseSolution]) -> Solution:

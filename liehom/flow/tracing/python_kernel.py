@@ -186,7 +186,7 @@ def _spaces() -> tuple[dict[str, Any], dict[str, Any]]:
 class PythonKernel(Kernel):
     """The run of a traced step in Python, one lane after the other; attributes and argument are those of `Kernel`."""
 
-    engine = "python"
+    engine, in_lockstep = "python", False
 
     def _build(self, constants: Sequence[Constant]) -> None:
         graph, n, text = self.graph, self.graph.size, _Text()
@@ -197,7 +197,7 @@ class PythonKernel(Kernel):
         sizes = graph.sizes
         outputs: list[Expr | float | None] = [
             graph.elapsed, graph.ordinary, None if sizes is None else sizes.accepted,
-            None if sizes is None else sizes.proposal, graph.tried, False if graph.reached is None else graph.reached,
+            None if sizes is None else sizes.proposal, graph.tried, graph.reached,
             *graph.largest.values(), *graph.summed.values(),
         ]  # fmt: skip
         wanted = [*graph.point, *(True if x is None else x for x in outputs)]
@@ -221,7 +221,7 @@ class PythonKernel(Kernel):
             if not self._called("begin", *start, *given)[-1]:
                 row["alive"] = FAILED
             elif row["alive"] > 0:
-                (self._in_lockstep if self.graph.reached is None else self._by_itself)(row, given, lane, known)
+                self._run(row, given, lane, known)
             state[:, lane] = list(row.values())
 
     def _given(self, start: list[float], lane: int, fields: dict[str, Any]) -> list[float]:
@@ -242,34 +242,7 @@ class PythonKernel(Kernel):
             elif value > row[name]:
                 row[name] = value
 
-    def _in_lockstep(self, row: dict[str, float], given: list[float], lane: int, fields: dict[str, Any]) -> None:
-        """Steps of one size, the last of them to the end; the point before a stop goes there first."""
-        n, size, origin, out, path = self.graph.size, *(fields[x] for x in ("step_size", "origin", "out", "path"))
-        stops, end, stop = fields["stops"].tolist(), fields["last_stop"], fields["first_stop"]
-        k = begin = fields["begin"]
-        point: Numbers = list(row.values())[:n]
-        while k < fields["end"]:
-            time, closing = origin + k * size, k + 1 == fields["total"]
-            there = stops[end] if closing else origin + (k + 1) * size
-            within = stops[stop] < there if size >= 0 else stops[stop] > there
-            goal = stops[stop] if within else there
-            step = goal - time if within or closing else size
-            new = self._called("step", *point, time, step, 0.0, *given)
-            total = sum(new[:n])
-            if not (new[n + 1] and total - total == 0):
-                row["alive"], row["count"] = FAILED, k
-                break
-            if goal == stops[stop]:
-                out[stop, :, lane] = new[:n]
-                stop += 1
-            if not within:
-                point, k = new[:n], k + 1
-                self._record(row, new[n + 6 :])
-                if path is not None:
-                    path[k - 1 - begin, :, lane] = *point, there, step
-        row.update(zip(self.names, point, strict=False))
-
-    def _by_itself(self, row: dict[str, float], given: list[float], lane: int, fields: dict[str, Any]) -> None:
+    def _run(self, row: dict[str, float], given: list[float], lane: int, fields: dict[str, Any]) -> None:
         """Steps of a lane with its own sizes and times."""
         n, stops, last = self.graph.size, fields["stops"].tolist(), fields["last_stop"]
         out, path, begin = fields["out"], fields["path"], fields["begin"]

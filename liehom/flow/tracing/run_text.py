@@ -23,11 +23,11 @@ from liehom.flow.tracing.llvm_text import Body, Writer, number
 from liehom.flow.tracing.loop import StepGraph
 
 FIELDS = (
-    "state", "start", "lanes", "first", "last", "begin", "end", "constants", "rows", "out", "path",
-    "stops", "last_stop", "origin", "step_size", "total", "first_stop",
+    "state", "start", "lanes", "first", "last", "constants", "rows", "out", "path", "stops", "last_stop", "first_stop",
+    "begin", "end", "total", "origin", "step_size",
 )  # fmt: skip
-"""Entries of the argument of `run`, each of 8 bytes. The last three are for steps in lockstep: their size, their number
-up to the end, and the number of the first stop."""
+"""Entries of the argument of `run`, each of 8 bytes. The number of the first stop, the number of steps up to the end,
+and the size of a step are for steps in lockstep."""
 POINTERS = frozenset(["state", "start", "constants", "rows", "out", "path", "stops"])
 FLOATS = frozenset(["origin", "step_size"])
 METADATA = """\
