@@ -250,6 +250,9 @@ class ConservingStep(LocalStep):
     def valid(self, h: Values) -> Values | bool:
         return self.base.valid(h)
 
+    def departure(self, h: Values) -> Values | None:
+        return self.base.departure(h)
+
     def diagnostics(self, h: Values) -> Diagnostics:
         """Numbers of the base, and of `conserved` with the prefix ``"conservation_"``.
 
