@@ -557,7 +557,8 @@ class Corrected(Derived):
         raise InputError(
             f"{self!r} cannot follow a tolerance from the start{place}: isotropy and the clock reach {rank[b]} of the "
             f"{dimension[b]} dimensions of its orbit, whatever the velocity, so no order above {self.base_order} is "
-            f"reached. Take LieTaylor({self._order}), which needs no range condition; with dt= steps are made all the same"
+            f"reached. Take LieTaylor({self._order}), which needs no range condition. With dt= steps are made all the "
+            "same, and the run says what they miss"
         )
 
     def prepare(self, action: Action, psi: Generator, m: Values, t: Values) -> Corrected:

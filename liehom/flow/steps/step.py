@@ -33,9 +33,9 @@ if TYPE_CHECKING:
 SAFETY = 0.9  # fraction of the step size at which the estimated error equals the tolerance
 SERIES_FRACTION = 0.1  # the largest length of a term of the error, in units of the length |X| h of the step
 MAX_SUM, LEAST_SHARE = 5.0, 1 / 32
-"""A term of order k of the error is at most the tolerance times `MAX_SUM` r^(1/(k-1)), where r is the tolerance in units
-of |m|, between `LEAST_SHARE` and 1. A run makes about r^(-1/(k-1)) such steps for each |m| of its way, so their errors
-add up to the same multiple of the tolerance, whatever it is. For low orders and small tolerances they add up to more."""
+"""A term of order k of the error is at most the tolerance times `MAX_SUM` r^(1/(k-1)), where r is the tolerance in
+units of |m|, between `LEAST_SHARE` and 1. A run makes about r^(-1/(k-1)) such steps for each |m| of its way, so their
+errors add up to the same multiple of the tolerance, whatever it is. With low orders they add up to more."""
 
 Defects: TypeAlias = tuple[tuple[int, Values], ...]
 """(k, |[t^k] (flow - step)|) for the orders k above the order of a step; arrays of shape (...,)."""
@@ -456,6 +456,7 @@ class Step(ABC):
 
     def check_adaptive(self, action: Action, m: Values, orbit_dimension: int | IntegerArray) -> None:
         """Refuse sizes by the tolerance if the step cannot have its order on the orbits of points m (..., N)."""
+        return
 
     def with_exponential_of(self, action: Action) -> Step:
         """The step, of the order that it has with the exponential of an action, as a base that `Corrected` raises.
