@@ -37,6 +37,7 @@ from liehom.flow.steps.step import (
     StepLike,
     StepLimits,
     as_step,
+    length,
     moved_by_isotropy,
     polynomial,
     read_point,
@@ -309,10 +310,10 @@ class ConservingStep(LocalStep):
     def _removing(self, along: Jet, z: Jet, k: int) -> Values:
         """The zeta in V_m with chi_m(zeta) = -[t^k] F along the step z."""
         value, m = along.coefficient(k), self.found.m
-        size = np.maximum(_length(m), np.finfo(float).tiny)
+        size = np.maximum(length(m), np.finfo(float).tiny)
         rate = 0.0 * size
         for j in range(1, k + 1):
-            rate = np.maximum(rate, (_length(z.coefficient(j)) / size) ** (1 / j))
+            rate = np.maximum(rate, (length(z.coefficient(j)) / size) ** (1 / j))
         noise = ROUND_OFF_UNITS * np.finfo(m.dtype).eps * self.found.scale * rate[..., None] ** k
         return -self.found.preimage(np.where(np.abs(value) > noise, value, 0.0))
 
@@ -328,10 +329,6 @@ class ConservingStep(LocalStep):
         for k in range(2, total + 1):
             zeta.replace(k - 1, self._removing(along, z, k), along, z)
         return polynomial(zeta.node.known, h)
-
-
-def _length(x: Values) -> Values:
-    return np.linalg.norm(x if type(x) is Traced else np.asarray(x, dtype=float), axis=-1)
 
 
 # The order to which a step conserves a first integral at a point (Definition 9), by expanding F along the step.

@@ -498,7 +498,7 @@ class Corrected(Derived):
     -----
     At times tau(h) of the step's own clock the trajectory, not only the orbit, has order n, at every point where the
     range condition (6.2) holds. If a linear system has no solution, the order reached before remains, and the residual
-    shows it.
+    shows it. Adaptive sizes are refused on orbits where (6.2) fails for every velocity.
 
     A field psi(m, t) may vanish at some time t_0, as t f(m) does at 0. Isotropy and clock raise the order at t_0 itself
     (leading order l > 1), but shortly after t_0 they are series in h / (t - t_0). By isotropy alone the global order
@@ -538,29 +538,6 @@ class Corrected(Derived):
 
     uses_isotropy = True
 
-    def check_adaptive(self, action: Action, m: Values, orbit_dimension: int | IntegerArray) -> None:
-        """Refuse them where the range condition fails for all velocities: the tolerance asks for an order that isotropy
-        cannot reach. Of many points the first `MOST_CHECKED` are looked at.
-        """
-        if self._order == self.base_order or action.tight_frame is not None or is_traced(m):
-            return
-        points = np.asarray(m, dtype=float).reshape(-1, np.shape(m)[-1])[:MOST_CHECKED]
-        dimension = np.broadcast_to(orbit_dimension, np.shape(m)[:-1]).reshape(-1)[:MOST_CHECKED]
-        frame, rank = action.isotropy_frame(points, dimension), 0 * dimension
-        for j in range(VELOCITIES):
-            some = np.cos((1.0 + j) * np.arange(1, frame.tangent.shape[-1] + 1))
-            rank = np.maximum(rank, RangeSolver(action, frame, frame.tangent @ some, 1, 1.0).rank)
-        if bool((rank >= dimension).all()):
-            return
-        b = int(np.argmax(rank < dimension))
-        place = "" if np.ndim(m) == 1 else f" of trajectory {b}"
-        raise InputError(
-            f"{self!r} cannot follow a tolerance from the start{place}: isotropy and the clock reach {rank[b]} of the "
-            f"{dimension[b]} dimensions of its orbit, whatever the velocity, so no order above {self.base_order} is "
-            f"reached. Take LieTaylor({self._order}), which needs no range condition. With dt= steps are made all the "
-            "same, and the run says what they miss"
-        )
-
     def prepare(self, action: Action, psi: Generator, m: Values, t: Values) -> Corrected:
         base = self.step.with_exponential_of(action).prepare(action, psi, m, t)
         return self if base is self.step else Corrected(base, self._order, weight=self.weight)
@@ -586,6 +563,34 @@ class Corrected(Derived):
     def __repr__(self) -> str:
         weight = "" if self.weight is None else f", weight={self.weight!r}"
         return f"Corrected({self.step!r}, order={self._order}{weight})"
+
+
+def check_adaptive(step: Step, action: Action, m: Values, orbit_dimension: int | IntegerArray) -> None:
+    """Refuse sizes by the tolerance where the range condition fails for all velocities, so that isotropy reaches no
+    order, at the first `MOST_CHECKED` of the points m (..., N).
+    """
+    while isinstance(step, Derived) and not isinstance(step, Corrected):
+        step = step.step
+    if not isinstance(step, Corrected) or step.order == step.base_order or action.tight_frame is not None:
+        return
+    if is_traced(m):  # by JAX: it has no values
+        return
+    points = np.asarray(m, dtype=float).reshape(-1, np.shape(m)[-1])[:MOST_CHECKED]
+    dimension = np.broadcast_to(orbit_dimension, np.shape(m)[:-1]).reshape(-1)[:MOST_CHECKED]
+    frame, rank = action.isotropy_frame(points, dimension), 0 * dimension
+    for j in range(VELOCITIES):
+        some = np.cos((1.0 + j) * np.arange(1, frame.tangent.shape[-1] + 1))
+        rank = np.maximum(rank, RangeSolver(action, frame, frame.tangent @ some, 1, 1.0).rank)
+    if bool((rank >= dimension).all()):
+        return
+    b = int(np.argmax(rank < dimension))
+    place = "" if np.ndim(m) == 1 else f" of trajectory {b}"
+    raise InputError(
+        f"{step!r} cannot follow a tolerance from the start{place}: isotropy and the clock reach {rank[b]} of the "
+        f"{dimension[b]} dimensions of its orbit, whatever the velocity, so no order above {step.base_order} is "
+        f"reached. Take LieTaylor({step.order}), which needs no range condition. With dt= steps are made all the same, "
+        "and the run says what they miss"
+    )
 
 
 @final

@@ -454,10 +454,6 @@ class Step(ABC):
         """
         return self
 
-    def check_adaptive(self, action: Action, m: Values, orbit_dimension: int | IntegerArray) -> None:
-        """Refuse sizes by the tolerance if the step cannot have its order on the orbits of points m (..., N)."""
-        return
-
     def with_exponential_of(self, action: Action) -> Step:
         """The step, of the order that it has with the exponential of an action, as a base that `Corrected` raises.
 
@@ -522,9 +518,6 @@ class Derived(Step, ABC):
     @property
     def trace_key(self) -> Hashable:
         return self.step.trace_key
-
-    def check_adaptive(self, action: Action, m: Values, orbit_dimension: int | IntegerArray) -> None:
-        self.step.check_adaptive(action, m, orbit_dimension)
 
 
 class OneExponential(Step, ABC):

@@ -18,6 +18,7 @@ from hypothesis import Phase, example, given, settings, strategies as st
 
 import liehom as lh
 from liehom.flow.run.records import bounds_of, earliness, time_of
+from liehom.flow.steps.corrected import check_adaptive
 from tests.flow.action.test_branch_free_frames import points_on_two_spheres, two_spheres
 from tests.sampling import examples
 
@@ -352,7 +353,7 @@ def test_points_with_a_cone_are_not_refused() -> None:
     for name in ("so(2,1)", "so(3,1)", "sl(2)", "gl(2)", "sp(4,R)"):
         rho = lh.defining(name)
         starts = np.vstack([np.random.default_rng(3).normal(size=(60, rho.size)), np.eye(rho.size)])
-        STEP.check_adaptive(lh.Action(rho), starts, rho.orbit_dimension(starts[0].tolist()))
+        check_adaptive(STEP, lh.Action(rho), starts, rho.orbit_dimension(starts[0].tolist()))
 
 
 def test_a_step_at_nominal_time_says_that_its_order_is_not_reached() -> None:
