@@ -241,13 +241,11 @@ def judgement(limits: SizeLimits, local: LocalStep, m: Values, size: Lanes, axes
     """Whether a step of signed size (..., 1) is accepted, and the next size; one for all of the last `axes` axes."""
     allowed, order = allowed_error(limits.rtol, limits.atol, m, axes), local.estimate_order
     if order is None:
-        accepted, grown = True, MAX_GROWTH * abs(size[..., 0])
-        departure = local.departure(size)
-        if departure is not None:
-            ratio = over_sites(departure, axes) / (ALLOWED_DEPARTURE * allowed)
-            accepted = ratio <= 1
-            grown = namespace(ratio).where(accepted, grown, MAX_SHRINK * abs(size[..., 0]))
-        return accepted, grown
+        departure, tried = local.departure(size), abs(size[..., 0])
+        if departure is None:
+            return True, MAX_GROWTH * tried
+        near = over_sites(departure, axes) <= ALLOWED_DEPARTURE * allowed
+        return near, namespace(near).where(near, MAX_GROWTH, MAX_SHRINK) * tried
     return judged(local.estimate(size), allowed, size[..., 0], order, axes)
 
 

@@ -178,25 +178,12 @@ CONSERVED_ROUNDOFFS = 32.0  # F counts as conserved up to this many units of its
 TOLERATED_UNITS = 0.5  # residuals of F within this many units of round-off, eps times `Conservation.scale`, count as 0
 
 
-@final
-@dataclass(frozen=True, slots=True)
-class Conserved:
-    """Report of a conserving step of one size; all arrays have shape (...,)."""
-
-    iterations: Values  # of Newton's method
-    defect: Values  # the largest |F_i(step) - target_i|
-    units: Values  # the same in units of the round-off of F_i
-    rank: Values  # of chi_m
-    wanted: Values  # number of integrals that are independent on the orbit at m
-    left: Values  # whether F does not resolve the effect of isotropy: at or near an equilibrium, or for h = 0
-
-
 class _Made(NamedTuple):
-    """The step of one size: its isotropy, its point and the report."""
+    """The step of one size: its isotropy, its point and its diagnostics."""
 
     zeta: Values | None
     point: Values
-    record: Conserved
+    numbers: Diagnostics
 
 
 @final
@@ -244,23 +231,13 @@ class ConservingStep(LocalStep):
         return self.base.departure(h)
 
     def diagnostics(self, h: Values) -> Diagnostics:
-        """Numbers of the base, and of `conserved` with the prefix ``"conservation_"``.
+        """Numbers of the base, and of the conservation with the prefix ``"conservation_"``.
 
-        "missed" says whether F differs from its target by more than round-off, "left" whether the step has no
-        correction, and "short" whether chi_m is not onto. Compiled code makes no step at which it is not.
+        "defect" is the largest |F_i(step) - target_i|, "missed" says whether it is more than round-off, "left" whether
+        the step has no correction, at or near an equilibrium or for h = 0, and "short" whether chi_m is not onto.
+        Compiled code makes no step at which it is not.
         """
-        report = self.conserved(h)
-        usual: Any = ~report.left
-        numbers: Diagnostics = {
-            "iterations": (report.iterations, "max"),
-            "defect": (report.defect, "max"),
-            "missed": (report.units > CONSERVED_ROUNDOFFS, "sum"),
-            "left": (report.left, "sum"),
-            "rank": (np.where(usual, report.rank, np.inf), "min"),
-            "wanted": (np.where(usual, report.wanted, 0), "max"),
-        }
-        if type(h) is not Traced:
-            numbers["short"] = usual & (report.rank < report.wanted), "sum"
+        numbers = self._made(h).numbers
         return {**self.base.diagnostics(h), **{f"conservation_{name}": x for name, x in numbers.items()}}
 
     def detail(self, name: str, index: tuple[int, ...]) -> Array | None:
@@ -269,10 +246,6 @@ class ConservingStep(LocalStep):
 
     def is_near_cone(self, h: Values) -> BooleanArray:
         return self.base.is_near_cone(h)
-
-    def conserved(self, h: Values) -> Conserved:
-        """`Conserved`, the report on F for the step of size h (..., 1)."""
-        return self._made(h).record
 
     def _isotropy(self, h: Values) -> Values | None:
         return self._series(h) if isinstance(h, Jet) else self._made(h).zeta
@@ -301,11 +274,20 @@ class ConservingStep(LocalStep):
         units = (defect / np.maximum(self._unit, float(np.finfo(defect.dtype).tiny))).max(axis=-1)
         rank, wanted = found.rank, found.wanted
         alone = (resolved < rank) | ~found.moving | (wanted == 0)
-        record = Conserved(solution.iterations, defect.max(axis=-1), units, rank, wanted, alone)
+        numbers: Diagnostics = {
+            "iterations": (solution.iterations, "max"),
+            "defect": (defect.max(axis=-1), "max"),
+            "missed": (units > CONSERVED_ROUNDOFFS, "sum"),
+            "left": (alone, "sum"),
+            "rank": (np.where(alone, np.inf, rank), "min"),
+            "wanted": (np.where(alone, 0, wanted), "max"),
+        }
         if isinstance(h, Traced):
             onto: Any = alone | (rank >= wanted)
             h.tape.required.append(Traced(h.tape, onto).entry)
-        return _Made(x, z if x is None else moved(x), record)
+        else:
+            numbers["short"] = ~alone & (rank < wanted), "sum"
+        return _Made(x, z if x is None else moved(x), numbers)
 
     def _removing(self, along: Jet, z: Jet, k: int) -> Values:
         """The zeta in V_m with chi_m(zeta) = -[t^k] F along the step z."""

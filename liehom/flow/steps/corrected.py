@@ -573,7 +573,7 @@ def check_adaptive(step: Step, action: Action, m: Values, orbit_dimension: int |
         step = step.step
     if not isinstance(step, Corrected) or step.order == step.base_order or action.tight_frame is not None:
         return
-    if is_traced(m):  # by JAX: it has no values
+    if is_traced(m) or not np.size(m):  # JAX traces it: it has no values
         return
     points = np.asarray(m, dtype=float).reshape(-1, np.shape(m)[-1])[:MOST_CHECKED]
     dimension = np.broadcast_to(orbit_dimension, np.shape(m)[:-1]).reshape(-1)[:MOST_CHECKED]
