@@ -337,7 +337,8 @@ class StiffnessWarning(UserWarning):
 class OrderWarning(UserWarning):
     """A run did not keep the order of its `Corrected` step; `time` is where this was first noticed.
 
-    The `status` of the solution is -2 then, `success` is False, and `message` and `report` say why.
+    With `dt` the `status` of the solution is -2 then, `success` is False, and `message` says why. Adaptive sizes keep
+    the tolerance, and `report` says why the order is not kept.
 
     Attributes
     ----------

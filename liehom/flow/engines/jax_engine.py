@@ -112,7 +112,8 @@ def solution_of(problem: Problem, dimension: int, times: JaxArray, results: Leav
     """
     report = _report(problem, dimension)
     code, count, t, failed, near, lost = map(jax.lax.stop_gradient, results[1:])
-    statuses: Any = jnp.where(code < 0, -1, jnp.where(jnp.isfinite(lost), ORDER_NOT_KEPT, 0))
+    unkept_order = ORDER_NOT_KEPT if problem.options.dt is not None else 0
+    statuses: Any = jnp.where(code < 0, -1, jnp.where(jnp.isfinite(lost), unkept_order, 0))
     status, message = 0, "Traced by JAX: `statuses` is -1 for trajectories that failed; there y is nan."
     if not is_traced(code) and not is_traced(problem.span[0]):
         start, end = (np.asarray(jax.lax.stop_gradient(x)) for x in problem.span)
@@ -120,7 +121,8 @@ def solution_of(problem: Problem, dimension: int, times: JaxArray, results: Leav
         first: Any = np.where(np.isfinite(lost), lost, np.nan)
         failed, near = (int(np.sum(np.asarray(x))) for x in (failed, near))
         reason = loss_of_order(failed, near, report.base_order)
-        ended = outcome(np.asarray(code), np.asarray(t), first, direction, problem.step.order, reason)
+        counted = first if unkept_order else np.full_like(first, np.nan)
+        ended = outcome(np.asarray(code), np.asarray(t), counted, direction, problem.step.order, reason)
         status, message = ended.status, ended.message
         if not np.all(np.isnan(first)):
             unkept = direction * float(np.nanmin(direction * first))

@@ -277,26 +277,7 @@ class ProductStep(Step, ABC):
     def with_exponential_of(self, action: Action) -> Step:
         """The step, of the order that it has with the exponential of an action."""
         order = order_with(action, self.order)
-        return self if order == self.order else _OfLowerOrder(self, order)
-
-
-@final
-class _OfLowerOrder(ProductStep):
-    """A step with an exponential that differs from exp at a power of h that the order of the step counts."""
-
-    def __init__(self, step: ProductStep, order: int) -> None:
-        self._step, self._order = step, order
-
-    @property
-    def order(self) -> int:
-        return self._order
-
-    @property
-    def scheme(self) -> Scheme:
-        return self._step.scheme
-
-    def __repr__(self) -> str:
-        return repr(self._step)
+        return self if order == self.order else self.with_prepared(order=order)
 
 
 @final

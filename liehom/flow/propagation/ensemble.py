@@ -104,7 +104,8 @@ def _message(parts: Sequence[Solution], statuses: IntegerArray, status: int, rep
     message = next(part.message for part in parts if part.status == status)
     if status >= 0:
         return message
-    more = "" if status != -1 or report.unkept_from is None else also_lost(report.wanted_order, report.loss)
+    lost = status == -1 and report.unkept_from is not None and not report.check
+    more = also_lost(report.wanted_order, report.loss) if lost else ""
     return message.split(TRAJECTORY_MARK)[0] + among(statuses == status, " failed" if status == -1 else LOST) + more
 
 

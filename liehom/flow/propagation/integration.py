@@ -110,6 +110,7 @@ def integrate(
     OrderWarning
         If a `Corrected` step does not keep its order, that is, if a linear system of its corrections has no solution
         or a step comes within two steps of the cone on which the range condition fails (docs/theory/correctors.md).
+        Adaptive sizes keep the tolerance there.
 
     Notes
     -----
@@ -118,8 +119,9 @@ def integrate(
 
     A trajectory ends with status -1, and with the points computed so far, if psi is not finite, the step size is below
     round-off, τ does not increase at a rate between 1/5 and 5 over the step, the equations of an implicit step have no
-    solution, or `max_steps` is reached. A trajectory that reaches its end without the order of its `Corrected` step
-    has status -2. The others of an ensemble go on, and `statuses` and `message` say which ended and when.
+    solution, or `max_steps` is reached. A trajectory that reaches its end by steps of size `dt` without the order of
+    its `Corrected` step has status -2. The others of an ensemble go on, and `statuses` and `message` say which ended
+    and when.
 
     Compiled steps call psi while they are traced, so it must be the same function all the time. Results agree with
     numpy to round-off, and `nfev` is the number of calls that the trajectory with the most of them would make. Keep a

@@ -51,7 +51,7 @@ from liehom.flow.run.options import ATOL, RTOL, Options, Span, points_of, span_o
 from liehom.flow.run.solution import Solution, checked_path, warn_of_failure
 from liehom.flow.series.arrays import is_jax
 from liehom.flow.steps.conserving import ConservingStep
-from liehom.flow.steps.corrected import CorrectedStep
+from liehom.flow.steps.corrected import CorrectedStep, check_adaptive
 from liehom.flow.steps.expansion import flow_series
 from liehom.flow.steps.step import ExponentialLike, Generator, Step, StepLike, as_step
 
@@ -376,6 +376,8 @@ class Propagator:
             raise InputError(f"min_step is {options.min_step}, larger than max_step, {options.max_step}")
         if options.dt is None and options.rtol == 0 and options.atol == 0:
             raise InputError("rtol and atol are both 0: no step size meets that; give one of them, or dt")
+        if options.dt is None:
+            check_adaptive(step, action, start, orbit_dimension)
         return Problem(action, self.field, step, span, start, orbit_dimension, options, bound, args)
 
     def _started(

@@ -120,6 +120,7 @@ FIRST_STEP_FRACTION = 0.01  # the first step of an embedded pair, in units of |m
 MAX_PAIR_GROWTH = 5.0  # with an embedded pair, the largest ratio of the next step size to the last one
 MAX_SHRINK = 0.2  # the smallest ratio of the next step size to the last one
 ERROR_TERMS = 2  # number of Taylor coefficients of the error that are computed
+ALLOWED_DEPARTURE = 3.0  # of a step from the trajectory (`LocalStep.departure`), in units of the error that is allowed
 MAX_GROWTH = 8.0  # without an embedded pair, the largest ratio of the next step size to the last one
 NONFINITE_RATIO = 1e10  # error, in units of the tolerance, that stands for one that is not finite
 SLOW_CLOCK = 2.0  # with a clock, the largest size of a step, in units of the time to the end
@@ -193,7 +194,7 @@ def tried_size(
         gap = limits.gap
         if is_unbounded(gap) and not local.looks_ahead:  # exponentials may turn a point many times in a step
             gap = xp.maximum(left / LOOKS, MAX_WAY * over_sites(length(m), axes) / speed)
-        bounds = StepLimits(allowed, speed, h, axes)
+        bounds = StepLimits(allowed, speed, h, axes, allowed / over_sites(length(m), axes))
         h = local.size(bounds)
         if h is None:  # the step does not know it: from the Taylor coefficients of its error
             series = step_series(action, local, m, order + ERROR_TERMS)
@@ -238,10 +239,14 @@ def time_scale(field: GeneratorField, m: Values, t: Values) -> Array:
 
 def judgement(limits: SizeLimits, local: LocalStep, m: Values, size: Lanes, axes: int = 0) -> tuple[Lanes, Lanes]:
     """Whether a step of signed size (..., 1) is accepted, and the next size; one for all of the last `axes` axes."""
-    if local.estimate_order is None:
-        return True, MAX_GROWTH * abs(size[..., 0])
-    allowed = allowed_error(limits.rtol, limits.atol, m, axes)
-    return judged(local.estimate(size), allowed, size[..., 0], local.estimate_order, axes)
+    allowed, order = allowed_error(limits.rtol, limits.atol, m, axes), local.estimate_order
+    if order is None:
+        departure, tried = local.departure(size), abs(size[..., 0])
+        if departure is None:
+            return True, MAX_GROWTH * tried
+        near = over_sites(departure, axes) <= ALLOWED_DEPARTURE * allowed
+        return near, namespace(near).where(near, MAX_GROWTH, MAX_SHRINK) * tried
+    return judged(local.estimate(size), allowed, size[..., 0], order, axes)
 
 
 def judged(error: Values, allowed: Values, h: Values, order: int, axes: int = 0) -> tuple[BooleanArray, Array]:

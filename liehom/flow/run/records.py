@@ -47,8 +47,6 @@ class ConservationReport:
         Number of steps at which chi_m was not onto.
     short_at : tuple or None
         (t, point, the combination of the integrals that is not reached) of the first such step.
-    linear : bool
-        Whether each step was corrected by one linear solve instead of Newton's method.
 
     Examples
     --------
@@ -70,13 +68,11 @@ class ConservationReport:
     left_steps: int
     short_steps: int
     short_at: tuple[float, tuple[float, ...], str] | None
-    linear: bool
 
     def __str__(self) -> str:
         newton = f"Newton, at most {self.iterations} iteration" + "s" * (self.iterations != 1)
-        how = "one linear solve per step" if self.linear else newton
-        text = f"first integrals kept to {self.defect:.2g} ({how}; least rank of chi {self.rank} of {self.wanted})"
-        if self.missed_steps and not self.linear:
+        text = f"first integrals kept to {self.defect:.2g} ({newton}; least rank of chi {self.rank} of {self.wanted})"
+        if self.missed_steps:
             text += f"\n    NOT to round-off after {self.missed_steps} steps"
         if self.short_at is not None:
             time, point, names = self.short_at
@@ -365,7 +361,6 @@ class StepStatistics:
             iterations=int(self._largest(p + "iterations")), defect=self._largest(p + "defect"),
             missed_steps=self._count(p + "missed"), left_steps=self._count(p + "left"),
             short_steps=self._count(p + "short"), short_at=None if place is None else (*place, names),
-            linear=self._largest(p + "linear") > 0,
         )  # fmt: skip
 
     def _others(self) -> tuple[tuple[str, str, float], ...]:

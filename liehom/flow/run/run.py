@@ -523,7 +523,9 @@ class Run:
                 t, y = t[: int(now.samples.done)], y[..., : int(now.samples.done)]
         t_events, y_events = now.event_log.lists() if self.stops.events is not None else (None, None)
         record, direction = now.statistics, float(self.direction)
-        ended = outcome(now.code, now.ended_at, record.unkept_from, direction, self.step.order, record.loss)
+        # sizes by the tolerance are those of the order that a step has: the order is not what such a run promises
+        unkept = record.unkept_from if o.dt is not None else np.full(self.shape, np.nan)
+        ended = outcome(now.code, now.ended_at, unkept, direction, self.step.order, record.loss)
         report = record.report(
             self.action, o.clock, self.psi.orbit_dimension, direction, ended.stopped_at,
             check=o.check(self.field.time_dependent), engine=", ".join(self.engines),

@@ -422,11 +422,13 @@ def warn_of_failure(solution: Solution, stacklevel: int) -> None:
         f"{report.step} did not keep its order {report.wanted_order} from t = {report.unkept_from:.6g} on: "
         f"{report.loss}. LieTaylor({report.wanted_order}) needs no range condition."
     )
-    if not report.failed_steps:
-        smaller = "A smaller tolerance helps" if report.check else "A smaller dt or adaptive steps help"
-        text += f" {smaller} if the path passes the cone without crossing it, and another psi may move the path away."
-    elif report.check:  # the clause of adaptive sizes
-        text += f" Adaptive sizes are those of order {report.order}: the tolerance is kept with many more steps."
+    if report.check:  # the clause of adaptive sizes
+        text += " Sizes follow the tolerance, and are small there."
+    elif not report.failed_steps:
+        text += (
+            " A smaller dt or adaptive steps help if the path passes the cone without crossing it, and another psi may "
+            "move the path away."
+        )
     warnings.warn(OrderWarning(text, report.wanted_order, report.unkept_from), stacklevel=stacklevel + 1)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, NamedTuple, final
 
@@ -37,6 +37,7 @@ from liehom.flow.steps.step import (
     StepLike,
     StepLimits,
     as_step,
+    length,
     moved_by_isotropy,
     polynomial,
     read_point,
@@ -177,53 +178,29 @@ CONSERVED_ROUNDOFFS = 32.0  # F counts as conserved up to this many units of its
 TOLERATED_UNITS = 0.5  # residuals of F within this many units of round-off, eps times `Conservation.scale`, count as 0
 
 
-@final
-@dataclass(frozen=True, slots=True)
-class Conserved:
-    """Report of a conserving step of one size; all arrays have shape (...,)."""
-
-    iterations: Values  # of Newton's method
-    defect: Values  # the largest |F_i(step) - target_i|
-    units: Values  # the same in units of the round-off of F_i
-    rank: Values  # of chi_m
-    wanted: Values  # number of integrals that are independent on the orbit at m
-    left: Values  # whether F does not resolve the effect of isotropy: at or near an equilibrium, or for h = 0
-
-
 class _Made(NamedTuple):
-    """The step of one size: its isotropy, its point and the report."""
+    """The step of one size: its isotropy, its point and its diagnostics."""
 
     zeta: Values | None
     point: Values
-    record: Conserved
+    numbers: Diagnostics
 
 
 @final
 class ConservingStep(LocalStep):
     """A conserving step at one point, as a function of h, for each of which the correction is computed.
 
-    `found` is chi_m, `target` the value at which F is to be, shape (..., k), or None for F(m), and n the index of the
-    first coefficient E_n that does not vanish everywhere, or None.
+    `found` is chi_m, and `target` the value at which F is to be, shape (..., k), or None for F(m).
     """
 
-    def __init__(
-        self,
-        base: LocalStep,
-        found: Conservation,
-        target: Values | None,
-        n: int | None,
-        *,
-        one_exponential: bool,
-        linear: bool,
-    ) -> None:
+    def __init__(self, base: LocalStep, found: Conservation, target: Values | None, *, one_exponential: bool) -> None:
         super().__init__(base.action, base.m, clock=base.clock)
-        self.base, self.found, self.n = base, found, n
+        self.base, self.found = base, found
         self.estimate_order, self.widest_gap, self.trajectory = base.estimate_order, base.widest_gap, base.trajectory
         self._target = found.value if target is None else target
-        self._one, self._linear = one_exponential, linear
+        self._one = one_exponential
         self._unit = TOLERATED_UNITS * float(np.finfo(found.m.dtype).eps) * found.scale
         self._made = LastSize(self._corrected)
-        self._sigma: Any = None
 
     @property
     def has_factors(self) -> bool:
@@ -250,25 +227,17 @@ class ConservingStep(LocalStep):
     def valid(self, h: Values) -> Values | bool:
         return self.base.valid(h)
 
-    def diagnostics(self, h: Values) -> Diagnostics:
-        """Numbers of the base, and of `conserved` with the prefix ``"conservation_"``.
+    def departure(self, h: Values) -> Values | None:
+        return self.base.departure(h)
 
-        "missed" says whether F differs from its target by more than round-off, "left" whether the step has no
-        correction, and "short" whether chi_m is not onto. Compiled code makes no step at which it is not.
+    def diagnostics(self, h: Values) -> Diagnostics:
+        """Numbers of the base, and of the conservation with the prefix ``"conservation_"``.
+
+        "defect" is the largest |F_i(step) - target_i|, "missed" says whether it is more than round-off, "left" whether
+        the step has no correction, at or near an equilibrium or for h = 0, and "short" whether chi_m is not onto.
+        Compiled code makes no step at which it is not.
         """
-        report = self.conserved(h)
-        usual: Any = ~report.left
-        numbers: Diagnostics = {
-            "iterations": (report.iterations, "max"),
-            "defect": (report.defect, "max"),
-            "missed": (report.units > CONSERVED_ROUNDOFFS, "sum"),
-            "left": (report.left, "sum"),
-            "rank": (np.where(usual, report.rank, np.inf), "min"),
-            "wanted": (np.where(usual, report.wanted, 0), "max"),
-            "linear": (np.full(np.shape(report.defect), float(self._linear)), "max"),
-        }
-        if type(h) is not Traced:
-            numbers["short"] = usual & (report.rank < report.wanted), "sum"
+        numbers = self._made(h).numbers
         return {**self.base.diagnostics(h), **{f"conservation_{name}": x for name, x in numbers.items()}}
 
     def detail(self, name: str, index: tuple[int, ...]) -> Array | None:
@@ -278,29 +247,8 @@ class ConservingStep(LocalStep):
     def is_near_cone(self, h: Values) -> BooleanArray:
         return self.base.is_near_cone(h)
 
-    def conserved(self, h: Values) -> Conserved:
-        """`Conserved`, the report on F for the step of size h (..., 1)."""
-        return self._made(h).record
-
-    def isotropy(self, h: Values) -> Values:
-        """The isotropy t^(n-1) sigma of the step of size h (..., 1), shape (..., dim g)."""
-        x, m = self._made(h).zeta, self.found.m
-        return zeros(m, (*m.shape[:-1], self.found.dimension)) if x is None else x
-
     def _isotropy(self, h: Values) -> Values | None:
         return self._series(h) if isinstance(h, Jet) else self._made(h).zeta
-
-    def sigma(self) -> Values:
-        """Solution of chi_m(sigma) = -E_n in V_m, shape (..., dim g); 0 where E_n is round-off."""
-        if self._sigma is None:
-            m = self.found.m
-            if self.n is None:
-                self._sigma = zeros(m, (*m.shape[:-1], self.found.dimension))
-            else:
-                z: Any = self.base.point(step_variable(self.n, m))
-                along: Any = self.found.integral(z)
-                self._sigma = self._removing(along, z, self.n)
-        return self._sigma
 
     def _corrected(self, h: Values) -> _Made:
         found, action, m = self.found, self.found.action, self.found.m
@@ -314,59 +262,55 @@ class ConservingStep(LocalStep):
             return found.integral(moved(x)) - self._target
 
         first = found.integral(z) - self._target
-        if self._linear:
-            linear = self.sigma() * h ** ((self.n or 1) - 1)
-            x: Values | None = linear
-            resolved: Values = found.rank
-            iterations: Values = np.zeros(m.shape[:-1], dtype=int)
-            left = residual(linear)
-        else:
-            if type(m) is Traced:
-                found.needs_motion(z - m)
-            elif not found.moving.all():
-                found = found.toward(z - m)
-            directions = found.directions
-            jacobian = found.along(z - m, directions)
-            solution = solve_levels(residual, first, directions, jacobian, self._unit, action.max_norm)
-            x, resolved, iterations, left = solution.x, solution.resolved, solution.iterations, solution.residual
+        if type(m) is Traced:
+            found.needs_motion(z - m)
+        elif not found.moving.all():
+            found = found.toward(z - m)
+        directions = found.directions
+        jacobian = found.along(z - m, directions)
+        solution = solve_levels(residual, first, directions, jacobian, self._unit, action.max_norm)
+        x, resolved, left = solution.x, solution.resolved, solution.residual
         defect = np.abs(left)
         units = (defect / np.maximum(self._unit, float(np.finfo(defect.dtype).tiny))).max(axis=-1)
         rank, wanted = found.rank, found.wanted
         alone = (resolved < rank) | ~found.moving | (wanted == 0)
-        record = Conserved(iterations, defect.max(axis=-1), units, rank, wanted, alone)
+        numbers: Diagnostics = {
+            "iterations": (solution.iterations, "max"),
+            "defect": (defect.max(axis=-1), "max"),
+            "missed": (units > CONSERVED_ROUNDOFFS, "sum"),
+            "left": (alone, "sum"),
+            "rank": (np.where(alone, np.inf, rank), "min"),
+            "wanted": (np.where(alone, 0, wanted), "max"),
+        }
         if isinstance(h, Traced):
             onto: Any = alone | (rank >= wanted)
             h.tape.required.append(Traced(h.tape, onto).entry)
-        return _Made(x, z if x is None else moved(x), record)
+        else:
+            numbers["short"] = ~alone & (rank < wanted), "sum"
+        return _Made(x, z if x is None else moved(x), numbers)
 
     def _removing(self, along: Jet, z: Jet, k: int) -> Values:
         """The zeta in V_m with chi_m(zeta) = -[t^k] F along the step z."""
         value, m = along.coefficient(k), self.found.m
-        size = np.maximum(_length(m), np.finfo(float).tiny)
+        size = np.maximum(length(m), np.finfo(float).tiny)
         rate = 0.0 * size
         for j in range(1, k + 1):
-            rate = np.maximum(rate, (_length(z.coefficient(j)) / size) ** (1 / j))
+            rate = np.maximum(rate, (length(z.coefficient(j)) / size) ** (1 / j))
         noise = ROUND_OFF_UNITS * np.finfo(m.dtype).eps * self.found.scale * rate[..., None] ** k
         return -self.found.preimage(np.where(np.abs(value) > noise, value, 0.0))
 
     def _series(self, h: Jet) -> Jet | None:
-        """The isotropy t^(n-1) sigma as a Jet in h that conserves F(m) to its order; None if it is 0."""
+        """The isotropy as a Jet in h that conserves F(m) to its order; None if that is 1."""
         total, found = h.order, self.found
-        if self.n is None or total < self.n:
+        if total < 2:
             return None
-        if self._linear:
-            return self.sigma() * h ** (self.n - 1) if self.n > 1 else None
         m = found.m
         zeta = zero_series(zeros(m, (*m.shape[:-1], found.dimension)), total)
         z: Any = moved_by_isotropy(self.base, step_variable(total, m), zeta, self._one)
         along: Any = found.integral(z)
-        for k in range(max(self.n, 2), total + 1):
+        for k in range(2, total + 1):
             zeta.replace(k - 1, self._removing(along, z, k), along, z)
         return polynomial(zeta.node.known, h)
-
-
-def _length(x: Values) -> Values:
-    return np.linalg.norm(x if type(x) is Traced else np.asarray(x, dtype=float), axis=-1)
 
 
 # The order to which a step conserves a first integral at a point (Definition 9), by expanding F along the step.
@@ -501,11 +445,11 @@ def round_off_of(
 
 # Conserving(step, F): a step that conserves first integrals by isotropy, to round-off or to one order higher.
 #     m -> Exp(xi(m, t) + t^(n-1) sigma) m,    sigma in g_m,    F(step) = F(start of the run)         (7.2), (7.6)
-# Here n - 1 is the order to which the base step conserves F. sigma is in V_m, the complement of ker chi_m in g_m; its
-# linearization solves chi_m(sigma) = -E_n. See section 7 of the paper.
+# Here n - 1 is the order to which the base step conserves F. sigma is in V_m, the complement of ker chi_m in g_m. See
+# section 7 of the paper.
 
 AIMS = ("start", "previous")
-EXTRA_POINTS, ENOUGH_TRAJECTORIES = 2, 16
+EXTRA_POINTS = 2
 TIME_SHIFT = 0.01
 
 
@@ -522,17 +466,13 @@ class Conserving(Derived):
     aim : "start" or "previous"
         The target: the value of F at the initial point of the run, so that round-off does not add up, or at the point
         before the step.
-    linear : bool
-        One linear solve per step instead of Newton's method: F is then conserved to order n.
-    order : int, optional
-        n - 1, the order to which the base conserves F. By default it is measured near the initial points.
     value : float or array of shape (..., k), optional
         The target, in place of the value of F at the initial point.
 
     Notes
     -----
     Proposition 10 of the paper. Newton's method starts at the solution of chi_m(sigma_0) = -E_n up to higher order (E_n
-    need not vanish, unlike its proof says); `linear` is the linearization after the proposition. At an equilibrium
+    need not vanish, unlike its proof says). At an equilibrium
     chi_m = 0, and the step is the base step; likewise if F does not resolve the orbits at the precision of the numbers.
     If chi_m loses rank along a trajectory, large steps of low order may not be able to reach the level set; the report
     counts the steps that miss it. The order as a method for trajectories is the order of the base.
@@ -560,8 +500,6 @@ class Conserving(Derived):
         F: IntegralSource,
         *,
         aim: str = "start",
-        linear: bool = False,
-        order: int | None = None,
         value: ArrayLike | None = None,
     ) -> None:
         step = as_step(step)
@@ -571,10 +509,7 @@ class Conserving(Derived):
             raise InputError(f"aim is {aim!r}, expected one of {', '.join(map(repr, AIMS))}")
         if value is not None and aim == "previous":
             raise InputError("the step aims at the previous point: leave out the value")
-        self.step, self.aim, self.linear = step, aim, bool(linear)
-        self.conserved_order: int | None = None
-        if order is not None:
-            self.conserved_order = checked_integer(order, "the order to which F is conserved")
+        self.step, self.aim = step, aim
         self._source = F
         self._value = None if value is None else np.asarray(value, dtype=float)
 
@@ -589,19 +524,10 @@ class Conserving(Derived):
 
     uses_isotropy = True
 
-    @property
-    def kept_order(self) -> int | None:
-        """The n of (7.2), after `prepare`; None if all E_n computed vanish."""
-        return None if self._begun is None else self._begun.n
-
     prepares_by_psi = True
 
-    @property
-    def trace_key(self) -> Hashable:
-        return self.kept_order, super().trace_key
-
     def prepare(self, action: Action, psi: Generator, m: Values, t: Values) -> Conserving:
-        """The step with the checked first integrals, their target values, and n, for a run from m at times t."""
+        """The step with the checked first integrals and their target values, for a run from m at times t."""
         made = self.with_prepared(step=self.step.prepare(action, psi, m, t))
         return made.with_prepared(_begun=_Begun(made, action, psi, m, t))
 
@@ -609,8 +535,6 @@ class Conserving(Derived):
         if is_jax(m) or is_exact(m):
             raise InputError("a conserving step iterates to round-off, on numpy arrays of floats only")
         time = t[..., 0] if np.ndim(t) else t
-        if self.linear and type(m) is Traced:
-            raise TraceError("linear=True measures the order to which F is kept, which is not compiled: leave it out")
         if self._begun is None:
             return self.prepare(action, psi, m, time).at(action, psi, m, t, error_terms=error_terms)
         known = self._begun
@@ -623,7 +547,7 @@ class Conserving(Derived):
             target = self._traced_target(known.integral, m)
         elif psi.start is not None and psi.start is not known.start:  # some trajectories of the run
             target = self._target(known.integral, psi.start)
-        return ConservingStep(local, chi, target, known.n, one_exponential=self.one_exponential, linear=self.linear)
+        return ConservingStep(local, chi, target, one_exponential=self.one_exponential)
 
     def _target(self, integral: FirstIntegral, start: Values) -> Values | None:
         """The values of F at which trajectories from these points aim; None for F(m)."""
@@ -645,8 +569,6 @@ class Conserving(Derived):
     def __repr__(self) -> str:
         source = repr(self._source) if isinstance(self._source, str) else _shown(self._source)
         options = "" if self.aim == "start" else f", aim={self.aim!r}"
-        options += ", linear=True" * self.linear
-        options += "" if self.conserved_order is None else f", order={self.conserved_order}"
         options += "" if self._value is None else f", value={self._value.tolist()}"
         return f"Conserving({self.step!r}, {source}{options})"
 
@@ -659,14 +581,13 @@ def _shown(source: IntegralSource) -> str:
 
 @final
 class _Begun:
-    """Data of a conserving step for a run: the first integral, checked, its target value, and n."""
+    """Data of a conserving step for a run: the first integral, checked, and its target value."""
 
     def __init__(self, step: Conserving, action: Action, psi: Generator, m: Values, t: Values) -> None:
         self.start, start = psi.start, m if psi.start is None else psi.start
         self.integral = FirstIntegral(step._source, action.representation.size)
-        self.n: int | None = None
         self.target: Any = None
-        if type(m) is Traced:  # without a run: n stays None
+        if type(m) is Traced:  # without a run
             return
         bound = step.order + 1
         self.integral.check(flow_series(psi.field, start, bound, t), bound)
@@ -675,15 +596,11 @@ class _Begun:
         self._explore(step, action, psi, start, t)
 
     def _explore(self, step: Conserving, action: Action, psi: Generator, start: Values, t: Values) -> None:
-        """Find n, and check that chi is onto, at the initial points and near them, as symmetric points may mislead."""
-        factor, bound = 0.5 if step.one_exponential else 1.0, step.order + EXTRA_ORDERS
-        inner = Generator(psi.field, psi.orbit_dimension, start)
+        """Check that chi is onto, at the initial points or near them, as symmetric points may mislead."""
+        factor = 0.5 if step.one_exponential else 1.0
         short: Any = np.ones(start.shape[:-1], dtype=bool)
-        orders = []
         first: Conservation | None = None
         for j in range(EXTRA_POINTS + 1):
-            if j > 1 and short.size >= ENOUGH_TRAJECTORIES and not short.any():
-                break  # this many trajectories, moved once from points that may be symmetric, are enough points
             x = np.cos((1.0 + j) * np.arange(1, action.dimension + 1)) / (action.max_norm or 1.0)
             point = action.act(np.broadcast_to(x, (*start.shape[:-1], x.size)), start) if j else start
             point = point.astype(start.dtype, copy=False)
@@ -694,18 +611,10 @@ class _Begun:
             chi = Conservation(action, self.integral, frame, point, psi.field.psi(point, time), factor)
             first = first or chi
             short = short & chi.moving & (chi.rank < chi.wanted)
-            if step.conserved_order is None:
-                local = step.step.at(action, inner, point, np.asarray(time)[..., None])
-                flow = flow_series(psi.field, point, bound, time)
-                changes = expanded(self.integral, local, bound)
-                finite = np.isfinite(np.asarray(changes)).all(axis=(0, -1))
-                noise = round_off_of(action, self.integral, flow, local, point, bound)
-                orders.append(np.where(finite, agreement(changes, noise), bound).min(initial=bound))
+            if not short.any():
+                return
         if short.any() and first is not None:
             _refuse(first, tuple(int(i) for i in np.argwhere(short)[0]), np.broadcast_to(t, short.shape))
-        order = step.conserved_order if step.conserved_order is not None else int(min(orders))
-        if step.conserved_order is not None or order < bound:
-            self.n = order + 1
 
 
 def _aimed_at(target: Array, value: Values) -> Values:

@@ -14,7 +14,7 @@ from liehom.base.errors import InputError, checked_integer
 from liehom.base.typing import BooleanArray, IntegerArray, Real, Values
 from liehom.flow.action.field import GeneratorField, check_point
 from liehom.flow.action.space import Action, IsotropyFrame
-from liehom.flow.series.arrays import as_values, is_exact, is_jax, is_lazy, namespace, zeros
+from liehom.flow.series.arrays import as_values, is_exact, is_jax, is_lazy, is_traced, namespace, zeros
 from liehom.flow.steps.expansion import ROUND_OFF_UNITS, Clock, Flow, at_rest, flow_series, leading_order, vanishing
 from liehom.flow.steps.range_solver import RangeSolver, TightFrameSolver
 from liehom.flow.steps.step import (
@@ -27,8 +27,10 @@ from liehom.flow.steps.step import (
     Step,
     StepLike,
     as_step,
+    length,
     moved_by_isotropy,
     polynomial,
+    series_at,
     step_variable,
     with_correction,
     zero_series,
@@ -97,6 +99,8 @@ def norm(xp: ModuleType, x: Values) -> Values:
 # (`range_solver`), or by terms of the flow itself where isotropy does not enter (`completion`).
 
 SOLVED_RTOL = 1e-6
+VELOCITIES, MOST_CHECKED = 2, 64  # velocities and points for which a range condition is looked at before a run
+LITTLE_ISOTROPY = 1 / 8  # a correction below this fraction of the way of a point counts as small
 
 
 @final
@@ -494,7 +498,7 @@ class Corrected(Derived):
     -----
     At times tau(h) of the step's own clock the trajectory, not only the orbit, has order n, at every point where the
     range condition (6.2) holds. If a linear system has no solution, the order reached before remains, and the residual
-    shows it.
+    shows it. Adaptive sizes are refused on orbits where (6.2) fails for every velocity.
 
     A field psi(m, t) may vanish at some time t_0, as t f(m) does at 0. Isotropy and clock raise the order at t_0 itself
     (leading order l > 1), but shortly after t_0 they are series in h / (t - t_0). By isotropy alone the global order
@@ -561,6 +565,34 @@ class Corrected(Derived):
         return f"Corrected({self.step!r}, order={self._order}{weight})"
 
 
+def check_adaptive(step: Step, action: Action, m: Values, orbit_dimension: int | IntegerArray) -> None:
+    """Refuse sizes by the tolerance where the range condition fails for all velocities, so that isotropy reaches no
+    order, at the first `MOST_CHECKED` of the points m (..., N).
+    """
+    while isinstance(step, Derived) and not isinstance(step, Corrected):
+        step = step.step
+    if not isinstance(step, Corrected) or step.order == step.base_order or action.tight_frame is not None:
+        return
+    if is_traced(m) or not np.size(m):  # JAX traces it: it has no values
+        return
+    points = np.asarray(m, dtype=float).reshape(-1, np.shape(m)[-1])[:MOST_CHECKED]
+    dimension = np.broadcast_to(orbit_dimension, np.shape(m)[:-1]).reshape(-1)[:MOST_CHECKED]
+    frame, rank = action.isotropy_frame(points, dimension), 0 * dimension
+    for j in range(VELOCITIES):
+        some = np.cos((1.0 + j) * np.arange(1, frame.tangent.shape[-1] + 1))
+        rank = np.maximum(rank, RangeSolver(action, frame, frame.tangent @ some, 1, 1.0).rank)
+    if bool((rank >= dimension).all()):
+        return
+    b = int(np.argmax(rank < dimension))
+    place = "" if np.ndim(m) == 1 else f" of trajectory {b}"
+    raise InputError(
+        f"{step!r} cannot follow a tolerance from the start{place}: isotropy and the clock reach {rank[b]} of the "
+        f"{dimension[b]} dimensions of its orbit, whatever the velocity, so no order above {step.base_order} is "
+        f"reached. Take LieTaylor({step.order}), which needs no range condition. With dt= steps are made all the same, "
+        "and the run says what they miss"
+    )
+
+
 @final
 class CorrectedStep(LocalStep):
     """A corrected step at one point, as a function of h, with its clock."""
@@ -587,6 +619,19 @@ class CorrectedStep(LocalStep):
 
     def valid(self, h: Values) -> Values | bool:
         return self.base.valid(h)
+
+    def departure(self, h: Values) -> Values | None:
+        """Next to the cone zeta has a pole, which the coefficients of the error may not show; the flow has none. Steps
+        that isotropy hardly changes, and those on orbits without a cone, are not judged.
+        """
+        zeta = self.correction.generator(h)
+        if zeta is None or self.action.tight_frame is not None or not self.trajectory:
+            return None
+        xp, size = namespace(self.m, h), h[..., 0]
+        way = length(self.trajectory[0]) * xp.abs(size)
+        isotropy = generator_norm(self.action, zeta) * length(self.m)
+        apart = length(self.point(h) - series_at(self.m, self.trajectory, self.time(size)[..., None]))
+        return xp.where(isotropy > LITTLE_ISOTROPY * way, apart, 0.0)
 
     def diagnostics(self, h: Values) -> Diagnostics:
         """Numbers of the correction, and of the base.

@@ -32,6 +32,10 @@ if TYPE_CHECKING:
 
 SAFETY = 0.9  # fraction of the step size at which the estimated error equals the tolerance
 SERIES_FRACTION = 0.1  # the largest length of a term of the error, in units of the length |X| h of the step
+MAX_SUM, LEAST_SHARE = 5.0, 1 / 32
+"""A term of order k of the error is at most the tolerance times `MAX_SUM` r^(1/(k-1)), where r is the tolerance in
+units of |m|, between `LEAST_SHARE` and 1. A run makes about r^(-1/(k-1)) such steps for each |m| of its way, so their
+errors add up to the same multiple of the tolerance, whatever it is. With low orders they add up to more."""
 
 Defects: TypeAlias = tuple[tuple[int, Values], ...]
 """(k, |[t^k] (flow - step)|) for the orders k above the order of a step; arrays of shape (...,)."""
@@ -44,9 +48,12 @@ class StepLimits(NamedTuple):
     speed: Values  # |X|, or 0 to disregard the length of the step
     largest: Values
     axes: int = 0  # the last axes that are the sites of a lattice, which has one size
+    relative: Values | None = None  # the allowed error in units of |m|; None to allow it in each step
 
 
-def size_from_defects(defects: Defects, allowed: Values, speed: Values, largest: Values, axes: int = 0) -> Array:
+def size_from_defects(
+    defects: Defects, allowed: Values, speed: Values, largest: Values, axes: int = 0, relative: Values | None = None
+) -> Array:
     """The largest step size (...,) within the tolerance, by its Taylor coefficients and the entries of `StepLimits`."""
     xp = namespace(largest, speed)
     h: Array = floats(largest)
@@ -55,7 +62,8 @@ def size_from_defects(defects: Defects, allowed: Values, speed: Values, largest:
         size: Any = over_sites(floats(defect), axes)
         some = size > 0
         safe = xp.where(some, size, 1.0)
-        allows: Any = (allowed / safe) ** (1 / k)
+        share: Any = 1.0 if relative is None else xp.clip(MAX_SUM * relative ** (1 / (k - 1)), LEAST_SHARE, 1.0)
+        allows: Any = (share * allowed / safe) ** (1 / k)
         if k > 2:  # not for k = 2: next to a time at which X vanishes steps would shrink with X
             series = (SERIES_FRACTION * way / safe) ** (1 / (k - 1))
             allows = xp.where(way > 0, xp.minimum(allows, series), allows)
@@ -226,6 +234,12 @@ class LocalStep:
     def estimate(self, h: Values) -> Values:
         """Estimate (..., N) of the error of the step of size h (..., 1), if `estimate_order` is not None."""
         raise InputError("the step has no estimate of its error: its `estimate_order` is None")
+
+    def departure(self, h: Values) -> Values | None:
+        """Distance (...,) of the point after a step of size h (..., 1) from the series of the trajectory, by which a
+        step of adaptive size is judged after it is made; None (default) for a step that is not.
+        """
+        return None
 
     def valid(self, h: Values) -> Values | bool:
         """Whether the step of size h (..., 1) may be taken, bool (...,): its equations are solved, a rank is reached.

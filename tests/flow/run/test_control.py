@@ -95,6 +95,14 @@ def test_the_size_from_defects_is_the_largest_within_all_bounds() -> None:
     assert float(size_from_defects((), np.array(1e-4), one, np.array(0.125))) == 0.125
 
 
+@pytest.mark.parametrize(("relative", "share"), [(1e-2, 1.0), (1e-4, 0.5), (1e-6, 5e-1 * 10**-0.5), (1e-15, 1 / 32)])
+def test_a_term_of_the_error_has_a_share_of_the_tolerance_that_falls_with_it(relative: float, share: float) -> None:
+    """5 r^(1/4) for a term of order 5, between 1/32 and 1."""
+    zero, one = np.array(0.0), np.array(1.0)
+    found = float(size_from_defects(((5, 7 * one),), 1e-6 * one, zero, one, relative=relative * one))
+    assert found == pytest.approx(control.SAFETY * (share * 1e-6 / 7) ** (1 / 5))
+
+
 def test_the_length_of_the_step_bounds_the_terms_above_the_second() -> None:
     """d_k h^k <= SERIES_FRACTION |X| h, except for k = 2, and not if |X| is disregarded."""
     defect, allowed, largest, slow = np.array(4.0), np.array(1e3), np.array(1e3), np.array(1e-6)

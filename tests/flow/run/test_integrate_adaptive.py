@@ -47,6 +47,15 @@ def test_errors_follow_the_tolerance(step: Any) -> None:
     assert growth < 1.5 * 1000 ** (1 / (step.order if step == lh.RKMK("rk45") else step.order + 1))
 
 
+@pytest.mark.parametrize("step", [lh.Corrected(lh.Euler(), 4), lh.Corrected(lh.Heun(), 4), lh.LieTaylor(6)], ids=repr)
+def test_errors_of_all_steps_add_up_to_the_same_multiple_of_the_tolerance(step: Any) -> None:
+    wanted, errors = reference(BODY, (0, 10), M0), []
+    for rtol in (1e-4, 1e-6, 1e-9):
+        sol = lh.integrate(BODY, (0, 10), M0, step=step, rtol=rtol, atol=1e-3 * rtol)
+        errors.append(np.linalg.norm(sol.y[:, -1] - wanted) / rtol)
+    assert min(errors) > 1 and max(errors) < 6  # with a tolerance in each step they are up to 9, 19 and 69
+
+
 def test_as_few_steps_as_solve_ivp_for_the_same_error() -> None:
     wanted = reference(BODY, (0, 5), M0)
     for rtol in (1e-5, 1e-8):
