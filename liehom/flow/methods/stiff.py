@@ -11,16 +11,26 @@ import numpy as np
 
 from liehom.base.errors import InputError, TraceError, displayed
 from liehom.base.typing import Real, Values
-from liehom.flow.action.maps import applied, solve
+from liehom.flow.action.maps import applied, identity, inverse, solve
 from liehom.flow.action.space import Action
 from liehom.flow.methods.rkmk import RKMK, Stages, sparse_row
 from liehom.flow.methods.runge_kutta import Tableau
 from liehom.flow.methods.tableaux import tableau as tableau_of
-from liehom.flow.run.check import widest_gap
-from liehom.flow.series.arrays import is_lazy, zeros
+from liehom.flow.run.check import repeated, widest_gap
+from liehom.flow.series.arrays import is_lazy, namespace, zeros
 from liehom.flow.series.jet import Jet
-from liehom.flow.steps.implicit import DIFFERENCE, NOT_ON_JETS, Equation, SparseRow, Stage, combined
-from liehom.flow.steps.step import Factors, Generator, LastSize, LocalStep, OneExponential
+from liehom.flow.steps.implicit import (
+    ALONG,
+    DIFFERENCE,
+    MAX_TRACED,
+    NOT_ON_JETS,
+    Equation,
+    SparseRow,
+    Stage,
+    combined,
+    reach_of,
+)
+from liehom.flow.steps.step import Factors, Generator, LastSize, LocalStep, OneExponential, length, polynomial
 
 # Linearization: u' = f(u, s) in the algebra at a point, with f(u, s) = dexp^-1_u psi(Exp(u) m, t + s).
 
@@ -74,6 +84,10 @@ class Linearization:
 # at 0, of order s (E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, section IV.8). The difference is
 # multiplied by (1 - h gamma J)^-1, J the derivative of the equation in the algebra, which keeps it bounded for stiff J.
 
+MAX_ITERATIONS = 12
+SOLVED = 0.01
+ROUNDED = 1e-11
+
 
 @final
 @dataclasses.dataclass(frozen=True, init=False, repr=False)
@@ -109,6 +123,7 @@ class StiffRKMK(OneExponential):
         if self.tableau.explicit:
             raise InputError(f"tableau {self.tableau.name!r} is explicit: take RKMK({self.tableau.name!r})")
         object.__setattr__(self, "_estimate", _estimate_of(self.tableau))
+        object.__setattr__(self, "_polynomial", _collocation_of(self.tableau))
 
     @property
     def order(self) -> int:
@@ -119,7 +134,9 @@ class StiffRKMK(OneExponential):
 
     def at(self, action: Action, psi: Generator, m: Values, t: Values, *, error_terms: int = 0) -> LocalStep:
         stages = Stages(self._base, action, psi, m, t, hasty=error_terms > 0)  # sizes are adaptive
-        return StiffStep(stages, *self._estimate)  # type: ignore[attr-defined]
+        few = len(self.tableau.b) * action.dimension <= MAX_TRACED and not psi.field.sites
+        polynomial = self._polynomial if error_terms and few else None  # type: ignore[attr-defined]
+        return StiffStep(stages, *self._estimate, polynomial)  # type: ignore[attr-defined]
 
     def __repr__(self) -> str:
         return f"StiffRKMK({self.tableau.name!r})"
@@ -129,11 +146,18 @@ class StiffRKMK(OneExponential):
 class StiffStep(LocalStep):
     """An implicit step at one point, with the estimate of its error; `StiffRKMK.at` returns it."""
 
-    def __init__(self, stages: Stages, weights: SparseRow, gamma: float, at_start: bool, order: int) -> None:
+    def __init__(
+        self, stages: Stages, weights: SparseRow, gamma: float, at_start: bool, order: int,
+        collocation: Collocation | None,
+    ) -> None:  # fmt: skip
         super().__init__(stages.action, stages.m)
         self.estimate_order, self.widest_gap = order, stages.numbers.widest_gap
         self._stages, self._weights, self._gamma, self._at_start = stages, weights, gamma, at_start
-        self._linear: Linearization | None = None
+        action = stages.action
+        self._linear = linear = Linearization(action, stages.psi, stages.m, stages.t, stages.method.terms)
+        self._filter = LastSize(lambda h: inverse(np.eye(action.dimension) - (gamma * h)[..., None] * linear.jacobian))
+        if collocation is not None:
+            self._collocation, self.collocates, stages.solver = collocation, True, self._solved
 
     def factors(self, h: Values) -> Factors:
         return (self._stages.combined(self._stages.numbers.b, h),)
@@ -141,13 +165,87 @@ class StiffStep(LocalStep):
     def estimate(self, h: Values) -> Values:
         """rho(x) m with x the filtered difference of two methods, for h (..., 1); shape (..., N)."""
         stages = self._stages
-        if self._linear is None:
-            self._linear = Linearization(stages.action, stages.psi, stages.m, stages.t, min(stages.method.terms, 2))
         known = stages.through(h, max(i for i, _ in (*stages.numbers.b, *self._weights)) + 1)
         difference: Any = combined(self._weights, known)
         if self._at_start:
             difference = difference + self._gamma * h * self._linear.start
-        return stages.action.infinitesimal(self._linear.solve(self._gamma * h, difference), stages.m)
+        return stages.action.infinitesimal(applied(self._filter(h), difference), stages.m)
+
+    def estimate_within(self, h: Values, part: Values) -> Values:
+        """The same where psi is asked at the time part h, part (..., 1) between 0 and 1, in place of the start."""
+        k = self._stages.through(h, len(self._collocation.powers))
+        slope: list[Any] = [combined(row, k) for row in self._collocation.powers]
+        u = part * polynomial([x / (j + 1) for j, x in enumerate(slope)], part)
+        difference = self._gamma * (h * self._linear.value(u, part * h) - polynomial(slope, part))
+        return self.action.infinitesimal(applied(self._filter(h), difference), self.action.act(u, self.m))
+
+    def _solved(self, h: Values) -> list[Any]:
+        """k_1, ..., k_s, from Newton iterations for A^-1 u = k(u); NaN where they do not converge."""
+        linear, rows, nodes = self._linear, self._collocation.inverse, self._stages.numbers.c
+        xp, unit = namespace(h, linear.start), reach_of(self.action)
+        bound = SOLVED * unit * self.allowed / length(self.m)
+        equation = Equation(
+            lambda u: [h * linear.value(x, c * h) for x, c in zip(u, nodes, strict=True)],
+            [((i, 1.0),) for i in range(len(nodes))],
+        )
+
+        def iteration(active: Any, u: Any, before: Any, solved: Any) -> list[Any]:
+            rest = equation.value(u) - xp.stack([combined(row, u) for row in rows])
+            change: Any = xp.stack(_eliminated(rows, equation.blocks(u), list(rest)))
+            size = xp.sqrt((change * change).sum(axis=(0, -1)))
+            along = (xp.stack([combined(row, change) for row in rows]) * rest).sum(axis=(0, -1)) > 0
+            going = active & (along | (size <= ALONG * unit)) & xp.isfinite(size)
+            fits = (size**3 <= bound * before**2) | ((size <= ROUNDED * unit) & (size >= before / 2))
+            done = going & fits & (size <= unit)
+            change = xp.where(size > unit, unit / xp.where(size > unit, size, 1.0), 1.0)[..., None] * change
+            return [going & ~done, xp.where(active[..., None], u + change, u), size, solved | done]
+
+        zero: Any = 0.0 * (h * linear.start)
+        rest = [h * linear.psi(linear.m, linear.t + c * h) + zero for c in nodes]
+        u = xp.stack(_eliminated(rows, [h[..., None] * linear.jacobian] * len(nodes), rest))
+        no = zero[..., 0] != 0
+        start = [~no, u, xp.sqrt((u * u).sum(axis=(0, -1))), no]
+        with np.errstate(over="ignore", invalid="ignore"):
+            _, u, _, solved = repeated(iteration, start, MAX_ITERATIONS)
+        u = xp.where(solved[..., None], u, np.nan)
+        return [combined(row, u) for row in rows]
+
+
+class Collocation(NamedTuple):
+    """Of a tableau A: h u'(x h) = sum_j x^j sum_i powers[j][i] k_i, and A^-1."""
+
+    powers: tuple[SparseRow, ...]
+    inverse: tuple[SparseRow, ...]
+
+
+def _collocation_of(tableau: Tableau) -> Collocation | None:
+    """None if the points of the stages are not those of a polynomial, or one of them is the start."""
+    a, _, c, _ = tableau.to_numpy()
+    power = np.arange(1, len(c) + 1)
+    if not np.allclose(a @ c[:, None] ** (power - 1), c[:, None] ** power / power, rtol=0, atol=1e-10) or not c.all():
+        return None
+    parts = np.linalg.inv(np.vander(c, increasing=True)), np.linalg.inv(a)
+    return Collocation(*(tuple(sparse_row(row) for row in part.tolist()) for part in parts))
+
+
+def _eliminated(rows: tuple[SparseRow, ...], blocks: Values, rest: list[Any]) -> list[Any]:
+    """x with sum_j rows[i][j] x_j - blocks[i] x_i = rest[i], by elimination of the whole x_i one after the other."""
+    s, one = len(rows), identity(blocks[0])
+    m: list[list[Any]] = [[one * dict(row).get(j, 0.0) for j in range(s)] for row in rows]
+    for i in range(s):
+        m[i][i] = m[i][i] - blocks[i]
+    for i in range(s):
+        m[i][i] = inverse(m[i][i])
+        for j in range(i + 1, s):
+            factor = m[j][i] @ m[i][i]
+            rest[j] = rest[j] - applied(factor, rest[i])
+            for k in range(i + 1, s):
+                m[j][k] = m[j][k] - factor @ m[i][k]
+    for i in reversed(range(s)):
+        for k in range(i + 1, s):
+            rest[i] = rest[i] - applied(m[i][k], rest[k])
+        rest[i] = applied(m[i][i], rest[i])
+    return rest
 
 
 def _estimate_of(tableau: Tableau) -> tuple[SparseRow, float, bool, int]:

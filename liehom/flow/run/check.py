@@ -108,6 +108,21 @@ def checked(
     return cut, looks, cuts, seen
 
 
+def looked_within(local: Any, size: Lanes, gap: Lanes, allowed: Lanes, error: Lanes) -> Lanes:
+    """The estimate of a step with a collocation polynomial, or the first one above `allowed` at looks within it."""
+    h = abs(size[..., 0])
+    xp = namespace(h)
+
+    def look(wanted: Lanes, at: Lanes, error: Lanes) -> list[Lanes]:
+        new = local.estimate_within(size, (at / xp.maximum(h, gap))[..., None])
+        error = xp.where((wanted & ~(squared_length(new) <= squared_length(error)))[..., None], new, error)
+        at = at + gap
+        return [wanted & (at < h) & (squared_length(error) <= allowed * allowed), at, error]
+
+    passes = (gap < h) & (squared_length(error) <= allowed * allowed)
+    return repeated(look, [passes, 0 * h + gap, error])[2]
+
+
 def _within(local: LocalStep, h: Lanes, left: Values, direction: Real) -> Lanes:
     """Sizes, at most h, of steps to the end at most, beyond which psi is not asked."""
     xp = namespace(h, left)

@@ -170,6 +170,8 @@ class LocalStep:
     looks_ahead: bool = False
     estimate_order: int | None = None
     widest_gap: float = 1.0
+    collocates: bool = False
+    allowed: Values | float = 0.0
     clock: tuple[tuple[int, Values], ...] = ()
 
     def __init__(
