@@ -208,7 +208,9 @@ def _traced(
     worst, summed = _statistics(tape, local, t, size, ends)
     if tried is not None and limits is not None and limits.gap is not None and local.estimate_order is None:
         summed |= {"looks": _number(tape, tried.looks), "cuts": _number(tape, tried.cuts)}
-    tape.required.append(_number(tape, local.valid(size)))
+    valid: Any = local.valid(size)
+    # a step that is not solved is rejected by its estimate, but for a stop within it
+    tape.required.append(_number(tape, valid | ~reached if local.collocates and stops else valid))
     solved = all_of(tape, tape.required)
     certain = tape.true if tried is None else _number(tape, tried.good)
     runs = all_of(tape, [x for x in (runs, solved, certain) if x is not None])

@@ -20,7 +20,6 @@ from liehom.flow.run.check import repeated, widest_gap
 from liehom.flow.series.arrays import is_lazy, namespace, zeros
 from liehom.flow.series.jet import Jet
 from liehom.flow.steps.implicit import (
-    ALONG,
     DIFFERENCE,
     MAX_TRACED,
     NOT_ON_JETS,
@@ -31,6 +30,7 @@ from liehom.flow.steps.implicit import (
     reach_of,
 )
 from liehom.flow.steps.step import Factors, Generator, LastSize, LocalStep, OneExponential, length, polynomial
+from liehom.flow.tracing.array import Traced
 
 # Linearization: u' = f(u, s) in the algebra at a point, with f(u, s) = dexp^-1_u psi(Exp(u) m, t + s).
 
@@ -169,7 +169,8 @@ class StiffStep(LocalStep):
         difference: Any = combined(self._weights, known)
         if self._at_start:
             difference = difference + self._gamma * h * self._linear.start
-        return stages.action.infinitesimal(applied(self._filter(h), difference), stages.m)
+        error: Any = stages.action.infinitesimal(applied(self._filter(h), difference), stages.m)
+        return namespace(error).where(self._settled[..., None], error, np.nan) if self.collocates else error
 
     def estimate_within(self, h: Values, part: Values) -> Values:
         """The same where psi is asked at the time part h, part (..., 1) between 0 and 1, in place of the start."""
@@ -191,24 +192,47 @@ class StiffStep(LocalStep):
 
         def iteration(active: Any, u: Any, before: Any, solved: Any) -> list[Any]:
             rest = equation.value(u) - xp.stack([combined(row, u) for row in rows])
-            change: Any = xp.stack(_eliminated(rows, equation.blocks(u), list(rest)))
+            blocks = equation.blocks(u)
+            change: Any = xp.stack(_eliminated(rows, blocks, list(rest)))
             size = xp.sqrt((change * change).sum(axis=(0, -1)))
-            along = (xp.stack([combined(row, change) for row in rows]) * rest).sum(axis=(0, -1)) > 0
-            going = active & (along | (size <= ALONG * unit)) & xp.isfinite(size)
+            going = active & xp.isfinite(size)
             fits = (size**3 <= bound * before**2) | ((size <= ROUNDED * unit) & (size >= before / 2))
-            done = going & fits & (size <= unit)
+            fits = fits & (size <= unit)
+            going = going & ~(fits & self._grows(u, change, h) & (size > ROUNDED * unit))
+            done = going & fits
             change = xp.where(size > unit, unit / xp.where(size > unit, size, 1.0), 1.0)[..., None] * change
             return [going & ~done, xp.where(active[..., None], u + change, u), size, solved | done]
 
         zero: Any = 0.0 * (h * linear.start)
         rest = [h * linear.psi(linear.m, linear.t + c * h) + zero for c in nodes]
-        u = xp.stack(_eliminated(rows, [h[..., None] * linear.jacobian] * len(nodes), rest))
+        blocks = [h[..., None] * linear.jacobian] * len(nodes)
+        u = xp.stack(_eliminated(rows, blocks, rest))
         no = zero[..., 0] != 0
         start = [~no, u, xp.sqrt((u * u).sum(axis=(0, -1))), no]
         with np.errstate(over="ignore", invalid="ignore"):
             _, u, _, solved = repeated(iteration, start, MAX_ITERATIONS)
-        u = xp.where(solved[..., None], u, np.nan)
+        self._settled = solved
+        # a kernel rejects the step by its estimate
+        u = xp.where(solved[..., None], u, 0.0 if isinstance(h, Traced) else np.nan)
         return [combined(row, u) for row in rows]
+
+    def _grows(self, u: Values, change: Values, h: Values) -> Values:
+        """Whether X grows in the direction of a change of a stage, too fast for a step that damps it (L-stable)."""
+        action, linear, nodes, xp = self.action, self._linear, self._stages.numbers.c, namespace(u)
+        flow = Equation(
+            lambda y: [action.infinitesimal(linear.psi(x, linear.t + c * h), x) for x, c in zip(y, nodes, strict=True)],
+            [((i, 1.0),) for i in range(len(nodes))],
+        )
+        points: Any = xp.stack([action.act(x, self.m) for x in u])
+        d: Any = xp.stack([action.infinitesimal(x, y) for x, y in zip(change, points, strict=True)])
+        growth: Any = self._gamma * h * (flow.along(points, d) * d).sum(axis=-1, keepdims=True)
+        return (growth > (d * d).sum(axis=-1, keepdims=True))[..., 0].any(axis=0)
+
+    def valid(self, h: Values) -> Values | bool:
+        if not self.collocates:
+            return True
+        self._stages.through(h, 1)
+        return self._settled
 
 
 class Collocation(NamedTuple):
