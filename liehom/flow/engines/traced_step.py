@@ -210,7 +210,7 @@ def _traced(
         summed |= {"looks": _number(tape, tried.looks), "cuts": _number(tape, tried.cuts)}
     valid: Any = local.valid(size)
     # a step that is not solved is rejected by its estimate, but for a stop within it
-    tape.required.append(_number(tape, valid | ~reached if local.collocates and stops else valid))
+    tape.required.append(_number(tape, valid if reached is None or not local.collocates else valid | ~reached))
     solved = all_of(tape, tape.required)
     certain = tape.true if tried is None else _number(tape, tried.good)
     runs = all_of(tape, [x for x in (runs, solved, certain) if x is not None])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import factorial, sqrt
 from typing import Any, NamedTuple, final
@@ -10,7 +11,7 @@ from typing import Any, NamedTuple, final
 import numpy as np
 
 from liehom.base.errors import InputError, TraceError, displayed
-from liehom.base.typing import Real, Values
+from liehom.base.typing import Lanes, Real, Values
 from liehom.flow.action.maps import applied, identity, inverse, solve
 from liehom.flow.action.space import Action
 from liehom.flow.methods.rkmk import RKMK, Stages, sparse_row
@@ -83,10 +84,16 @@ class Linearization:
 # a collocation method with s stages the comparison is the quadrature with the nodes 0, c_1, ..., c_s and weight gamma
 # at 0, of order s (E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, section IV.8). The difference is
 # multiplied by (1 - h gamma J)^-1, J the derivative of the equation in the algebra, which keeps it bounded for stiff J.
+# It is gamma times the difference of field and collocation polynomial at the start of the step, and the same is asked
+# for at looks within the step (`liehom.flow.run.check`), which is as long as its error allows.
+#
+# Steps of adaptive sizes, of up to 18 unknowns, solve their equations to a small part of the tolerance. They are given
+# up, and tried with a smaller size, if Newton's method does not converge or X grows too fast at the solution: L-stable
+# methods damp what grows, and stay where a trajectory leaves.
 
 MAX_ITERATIONS = 12
-SOLVED = 0.01
-ROUNDED = 1e-11
+SOLVED = 1e-6  # of the error that is allowed: engines that solve the equations to round-off have the same points
+ROUNDED = 1e-11  # changes below this, in units of the reach, may be round-off
 
 
 @final
@@ -136,7 +143,7 @@ class StiffRKMK(OneExponential):
         stages = Stages(self._base, action, psi, m, t, hasty=error_terms > 0)  # sizes are adaptive
         few = len(self.tableau.b) * action.dimension <= MAX_TRACED and not psi.field.sites
         polynomial = self._polynomial if error_terms and few else None  # type: ignore[attr-defined]
-        return StiffStep(stages, *self._estimate, polynomial)  # type: ignore[attr-defined]
+        return StiffStep(stages, polynomial, *self._estimate)  # type: ignore[attr-defined]
 
     def __repr__(self) -> str:
         return f"StiffRKMK({self.tableau.name!r})"
@@ -147,8 +154,8 @@ class StiffStep(LocalStep):
     """An implicit step at one point, with the estimate of its error; `StiffRKMK.at` returns it."""
 
     def __init__(
-        self, stages: Stages, weights: SparseRow, gamma: float, at_start: bool, order: int,
-        collocation: Collocation | None,
+        self, stages: Stages, collocation: Collocation | None, weights: SparseRow, gamma: float, at_start: bool,
+        order: int,
     ) -> None:  # fmt: skip
         super().__init__(stages.action, stages.m)
         self.estimate_order, self.widest_gap = order, stages.numbers.widest_gap
@@ -180,49 +187,47 @@ class StiffStep(LocalStep):
         difference = self._gamma * (h * self._linear.value(u, part * h) - polynomial(slope, part))
         return self.action.infinitesimal(applied(self._filter(h), difference), self.action.act(u, self.m))
 
-    def _solved(self, h: Values) -> list[Any]:
-        """k_1, ..., k_s, from Newton iterations for A^-1 u = k(u); NaN where they do not converge."""
-        linear, rows, nodes = self._linear, self._collocation.inverse, self._stages.numbers.c
-        xp, unit = namespace(h, linear.start), reach_of(self.action)
-        bound = SOLVED * unit * self.allowed / length(self.m)
-        equation = Equation(
-            lambda u: [h * linear.value(x, c * h) for x, c in zip(u, nodes, strict=True)],
-            [((i, 1.0),) for i in range(len(nodes))],
+    def _equation(self, function: Callable[[Any, Any], Any]) -> Equation:
+        """An equation for the stages one by one: a function of a generator or point, and of the time of the stage."""
+        times = self._stages.numbers.c
+        return Equation(
+            lambda y: [function(x, c) for x, c in zip(y, times, strict=True)], [((i, 1.0),) for i in range(len(times))]
         )
 
-        def iteration(active: Any, u: Any, before: Any, solved: Any) -> list[Any]:
-            rest = equation.value(u) - xp.stack([combined(row, u) for row in rows])
-            blocks = equation.blocks(u)
-            change: Any = xp.stack(_eliminated(rows, blocks, list(rest)))
-            size = xp.sqrt((change * change).sum(axis=(0, -1)))
-            going = active & xp.isfinite(size)
-            fits = (size**3 <= bound * before**2) | ((size <= ROUNDED * unit) & (size >= before / 2))
-            fits = fits & (size <= unit)
-            going = going & ~(fits & self._grows(u, change, h) & (size > ROUNDED * unit))
-            done = going & fits
-            change = xp.where(size > unit, unit / xp.where(size > unit, size, 1.0), 1.0)[..., None] * change
-            return [going & ~done, xp.where(active[..., None], u + change, u), size, solved | done]
+    def _solved(self, h: Values) -> list[Any]:
+        """k_1, ..., k_s with k = A^-1 u, by Newton's method for A^-1 u = k(u); NaN where it finds no solution."""
+        linear, rows, unit = self._linear, self._collocation.inverse, reach_of(self.action)
+        xp, bound = namespace(h, linear.start), SOLVED * unit * self.allowed / length(self.m)
+        equation = self._equation(lambda u, c: h * linear.value(u, c * h))
 
+        def iteration(active: Lanes, u: Lanes, before: Lanes, solved: Lanes) -> list[Lanes]:
+            rest = equation.value(u) - xp.stack([combined(row, u) for row in rows])
+            change: Any = xp.stack(_eliminated(rows, equation.blocks(u), list(rest)))
+            size = xp.sqrt((change * change).sum(axis=(0, -1)))
+            rounded = (size <= ROUNDED * unit) & (size >= before / 2)
+            ends = (size <= unit) & ((size**3 <= bound * before**2) | rounded)  # the next change is about the square
+            good = active & xp.isfinite(size) & ~(ends & (size > ROUNDED * unit) & self._grows(u, change, h))
+            change = xp.where(size > unit, unit / xp.where(size > unit, size, 1.0), 1.0)[..., None] * change
+            return [good & ~ends, xp.where(active[..., None], u + change, u), size, solved | (good & ends)]
+
+        # first the derivative at the start of the step: those at the times of the stages, where the start is far from
+        # the solution, have large derivatives along the isotropy
         zero: Any = 0.0 * (h * linear.start)
-        rest = [h * linear.psi(linear.m, linear.t + c * h) + zero for c in nodes]
-        blocks = [h[..., None] * linear.jacobian] * len(nodes)
-        u = xp.stack(_eliminated(rows, blocks, rest))
+        rest = [h * linear.psi(linear.m, linear.t + c * h) + zero for c in self._stages.numbers.c]
+        u = xp.stack(_eliminated(rows, [h[..., None] * linear.jacobian] * len(rows), rest))
         no = zero[..., 0] != 0
-        start = [~no, u, xp.sqrt((u * u).sum(axis=(0, -1))), no]
         with np.errstate(over="ignore", invalid="ignore"):
-            _, u, _, solved = repeated(iteration, start, MAX_ITERATIONS)
-        self._settled = solved
-        # a kernel rejects the step by its estimate
-        u = xp.where(solved[..., None], u, 0.0 if isinstance(h, Traced) else np.nan)
+            _, u, _, self._settled = repeated(
+                iteration, [~no, u, xp.sqrt((u * u).sum(axis=(0, -1))), no], MAX_ITERATIONS
+            )
+        # a kernel rejects the step by its estimate if the point is finite
+        u = xp.where(self._settled[..., None], u, 0.0 if isinstance(h, Traced) else np.nan)
         return [combined(row, u) for row in rows]
 
-    def _grows(self, u: Values, change: Values, h: Values) -> Values:
-        """Whether X grows in the direction of a change of a stage, too fast for a step that damps it (L-stable)."""
-        action, linear, nodes, xp = self.action, self._linear, self._stages.numbers.c, namespace(u)
-        flow = Equation(
-            lambda y: [action.infinitesimal(linear.psi(x, linear.t + c * h), x) for x, c in zip(y, nodes, strict=True)],
-            [((i, 1.0),) for i in range(len(nodes))],
-        )
+    def _grows(self, u: Lanes, change: Lanes, h: Values) -> Lanes:
+        """Whether X grows at a stage, in the direction of its change, so fast that the step would damp it."""
+        action, linear, xp = self.action, self._linear, namespace(u)
+        flow = self._equation(lambda y, c: action.infinitesimal(linear.psi(y, linear.t + c * h), y))
         points: Any = xp.stack([action.act(x, self.m) for x in u])
         d: Any = xp.stack([action.infinitesimal(x, y) for x, y in zip(change, points, strict=True)])
         growth: Any = self._gamma * h * (flow.along(points, d) * d).sum(axis=-1, keepdims=True)
@@ -252,12 +257,13 @@ def _collocation_of(tableau: Tableau) -> Collocation | None:
     return Collocation(*(tuple(sparse_row(row) for row in part.tolist()) for part in parts))
 
 
-def _eliminated(rows: tuple[SparseRow, ...], blocks: Values, rest: list[Any]) -> list[Any]:
+def _eliminated(rows: Sequence[SparseRow], blocks: Sequence[Any] | Values, rest: list[Any]) -> list[Any]:
     """x with sum_j rows[i][j] x_j - blocks[i] x_i = rest[i], by elimination of the whole x_i one after the other."""
-    s, one = len(rows), identity(blocks[0])
-    m: list[list[Any]] = [[one * dict(row).get(j, 0.0) for j in range(s)] for row in rows]
-    for i in range(s):
-        m[i][i] = m[i][i] - blocks[i]
+    parts: Any = blocks
+    s, one = len(rows), identity(parts[0])
+    m: list[list[Any]] = [
+        [one * dict(row).get(j, 0.0) - (parts[i] if i == j else 0.0) for j in range(s)] for i, row in enumerate(rows)
+    ]
     for i in range(s):
         m[i][i] = inverse(m[i][i])
         for j in range(i + 1, s):

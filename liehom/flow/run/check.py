@@ -108,7 +108,7 @@ def checked(
     return cut, looks, cuts, seen
 
 
-def looked_within(local: Any, size: Lanes, gap: Lanes, allowed: Lanes, error: Lanes) -> Lanes:
+def looked_within(local: LocalStep, size: Lanes, gap: Lanes, allowed: Lanes, error: Lanes) -> Lanes:
     """The estimate of a step with a collocation polynomial, or the first one above `allowed` at looks within it."""
     h = abs(size[..., 0])
     xp = namespace(h)
