@@ -209,7 +209,7 @@ def _traced(
     if tried is not None and limits is not None and limits.gap is not None and local.estimate_order is None:
         summed |= {"looks": _number(tape, tried.looks), "cuts": _number(tape, tried.cuts)}
     valid: Any = local.valid(size)
-    # a step that is not solved is rejected by its estimate, but for a stop within it
+    # the estimate of a step that is not solved rejects it; a stop within it is left to numpy
     tape.required.append(_number(tape, valid if reached is None or not local.collocates else valid | ~reached))
     solved = all_of(tape, tape.required)
     certain = tape.true if tried is None else _number(tape, tried.good)

@@ -180,7 +180,7 @@ class StiffStep(LocalStep):
         return namespace(error).where(self._settled[..., None], error, np.nan) if self.collocates else error
 
     def estimate_within(self, h: Values, part: Values) -> Values:
-        """The same where psi is asked at the time part h, part (..., 1) between 0 and 1, in place of the start."""
+        """The same vectors (..., N) with psi at the time part h, 0 <= part < 1, in place of the start."""
         k = self._stages.through(h, len(self._collocation.powers))
         slope: list[Any] = [combined(row, k) for row in self._collocation.powers]
         u = part * polynomial([x / (j + 1) for j, x in enumerate(slope)], part)
@@ -241,7 +241,7 @@ class StiffStep(LocalStep):
 
 
 class Collocation(NamedTuple):
-    """Of a tableau A: h u'(x h) = sum_j x^j sum_i powers[j][i] k_i, and A^-1."""
+    """The rows of A^-1, and of the polynomial h u'(x h) = sum_j x^j sum_i powers[j][i] k_i of the stages k_i."""
 
     powers: tuple[SparseRow, ...]
     inverse: tuple[SparseRow, ...]
