@@ -132,8 +132,10 @@ def test_a_pair_asks_psi_as_often_as_a_series() -> None:
         assert np.diff(times).max() == pytest.approx(longest)
 
 
-@pytest.mark.parametrize("engine", ENGINES)
-@pytest.mark.parametrize("name", ["radau3", "radau5", "radau9", "gauss2"])
+@pytest.mark.parametrize(
+    ("name", "engine"),
+    [*[(name, "llvm") for name in ("radau3", "radau5", "radau9", "gauss2")], ("radau5", "numpy"), ("radau5", "jax")],
+)
 def test_a_pulse_within_a_long_step_of_collocation_is_seen(name: str, engine: str) -> None:
     """Of width span/250; without it, or without looks, two steps lead to the end."""
     if engine != "numpy":
