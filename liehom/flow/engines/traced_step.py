@@ -208,7 +208,9 @@ def _traced(
     worst, summed = _statistics(tape, local, t, size, ends)
     if tried is not None and limits is not None and limits.gap is not None and local.estimate_order is None:
         summed |= {"looks": _number(tape, tried.looks), "cuts": _number(tape, tried.cuts)}
-    tape.required.append(_number(tape, local.valid(size)))
+    valid: Any = local.valid(size)
+    # the estimate of a step that is not solved rejects it; a stop within it is left to numpy
+    tape.required.append(_number(tape, valid if reached is None or not local.collocates else valid | ~reached))
     solved = all_of(tape, tape.required)
     certain = tape.true if tried is None else _number(tape, tried.good)
     runs = all_of(tape, [x for x in (runs, solved, certain) if x is not None])

@@ -10,7 +10,7 @@ u(t) in g with Exp(u(t)) m = F_t(m) solves u' = dExp^-1_u psi(Exp(u) m, t), u(0)
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from fractions import Fraction
 from typing import Any, NamedTuple, final
 
@@ -174,6 +174,7 @@ class Stages:
         self._shape = (*np.shape(m)[:-1], action.dimension)
         self._start: Values | None = None
         self._known: LastSize[list[Values]] = LastSize(lambda h: [])
+        self.solver: Callable[[Values], list[Values]] = self._solved  # of all stages at once
 
     def combined(self, weights: SparseRow, h: Values) -> Values:
         """sum_i weights[i] k_i, by the stages that are needed."""
@@ -183,7 +184,7 @@ class Stages:
         """The first `count` stages; later ones are computed only if the method is implicit in all of them."""
         known = self._known(h)
         if not self._sequential and not known:
-            known += self._solved(h)
+            known += self.solver(h)
         while len(known) < count:
             known.append(self._next(known, h))
         return known

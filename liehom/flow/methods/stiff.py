@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import factorial, sqrt
 from typing import Any, NamedTuple, final
@@ -10,17 +11,27 @@ from typing import Any, NamedTuple, final
 import numpy as np
 
 from liehom.base.errors import InputError, TraceError, displayed
-from liehom.base.typing import Real, Values
-from liehom.flow.action.maps import applied, solve
+from liehom.base.typing import Lanes, Real, Values
+from liehom.flow.action.maps import applied, identity, inverse, solve
 from liehom.flow.action.space import Action
 from liehom.flow.methods.rkmk import RKMK, Stages, sparse_row
 from liehom.flow.methods.runge_kutta import Tableau
 from liehom.flow.methods.tableaux import tableau as tableau_of
-from liehom.flow.run.check import widest_gap
-from liehom.flow.series.arrays import is_lazy, zeros
+from liehom.flow.run.check import repeated, widest_gap
+from liehom.flow.series.arrays import is_lazy, namespace, zeros
 from liehom.flow.series.jet import Jet
-from liehom.flow.steps.implicit import DIFFERENCE, NOT_ON_JETS, Equation, SparseRow, Stage, combined
-from liehom.flow.steps.step import Factors, Generator, LastSize, LocalStep, OneExponential
+from liehom.flow.steps.implicit import (
+    DIFFERENCE,
+    MAX_TRACED,
+    NOT_ON_JETS,
+    Equation,
+    SparseRow,
+    Stage,
+    combined,
+    reach_of,
+)
+from liehom.flow.steps.step import Factors, Generator, LastSize, LocalStep, OneExponential, length, polynomial
+from liehom.flow.tracing.array import Traced
 
 # Linearization: u' = f(u, s) in the algebra at a point, with f(u, s) = dexp^-1_u psi(Exp(u) m, t + s).
 
@@ -73,6 +84,16 @@ class Linearization:
 # a collocation method with s stages the comparison is the quadrature with the nodes 0, c_1, ..., c_s and weight gamma
 # at 0, of order s (E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, section IV.8). The difference is
 # multiplied by (1 - h gamma J)^-1, J the derivative of the equation in the algebra, which keeps it bounded for stiff J.
+# It is gamma times the difference of field and collocation polynomial at the start of the step, and the same is asked
+# for at looks within the step (`liehom.flow.run.check`), which is as long as its error allows.
+#
+# Steps of adaptive sizes, of up to 18 unknowns, solve their equations to a small part of the tolerance. They are given
+# up, and tried with a smaller size, if Newton's method does not converge or X grows too fast at the solution: L-stable
+# methods damp what grows, and stay where a trajectory leaves.
+
+MAX_ITERATIONS = 12
+SOLVED = 1e-6  # of the error that is allowed: engines that solve the equations to round-off have the same points
+ROUNDED = 1e-11  # changes below this, in units of the reach, may be round-off
 
 
 @final
@@ -109,6 +130,7 @@ class StiffRKMK(OneExponential):
         if self.tableau.explicit:
             raise InputError(f"tableau {self.tableau.name!r} is explicit: take RKMK({self.tableau.name!r})")
         object.__setattr__(self, "_estimate", _estimate_of(self.tableau))
+        object.__setattr__(self, "_polynomial", _collocation_of(self.tableau))
 
     @property
     def order(self) -> int:
@@ -119,7 +141,9 @@ class StiffRKMK(OneExponential):
 
     def at(self, action: Action, psi: Generator, m: Values, t: Values, *, error_terms: int = 0) -> LocalStep:
         stages = Stages(self._base, action, psi, m, t, hasty=error_terms > 0)  # sizes are adaptive
-        return StiffStep(stages, *self._estimate)  # type: ignore[attr-defined]
+        few = len(self.tableau.b) * action.dimension <= MAX_TRACED and not psi.field.sites
+        polynomial = self._polynomial if error_terms and few else None  # type: ignore[attr-defined]
+        return StiffStep(stages, polynomial, *self._estimate)  # type: ignore[attr-defined]
 
     def __repr__(self) -> str:
         return f"StiffRKMK({self.tableau.name!r})"
@@ -129,11 +153,18 @@ class StiffRKMK(OneExponential):
 class StiffStep(LocalStep):
     """An implicit step at one point, with the estimate of its error; `StiffRKMK.at` returns it."""
 
-    def __init__(self, stages: Stages, weights: SparseRow, gamma: float, at_start: bool, order: int) -> None:
+    def __init__(
+        self, stages: Stages, collocation: Collocation | None, weights: SparseRow, gamma: float, at_start: bool,
+        order: int,
+    ) -> None:  # fmt: skip
         super().__init__(stages.action, stages.m)
         self.estimate_order, self.widest_gap = order, stages.numbers.widest_gap
         self._stages, self._weights, self._gamma, self._at_start = stages, weights, gamma, at_start
-        self._linear: Linearization | None = None
+        action = stages.action
+        self._linear = linear = Linearization(action, stages.psi, stages.m, stages.t, stages.method.terms)
+        self._filter = LastSize(lambda h: inverse(np.eye(action.dimension) - (gamma * h)[..., None] * linear.jacobian))
+        if collocation is not None:
+            self._collocation, self.collocates, stages.solver = collocation, True, self._solved
 
     def factors(self, h: Values) -> Factors:
         return (self._stages.combined(self._stages.numbers.b, h),)
@@ -141,13 +172,110 @@ class StiffStep(LocalStep):
     def estimate(self, h: Values) -> Values:
         """rho(x) m with x the filtered difference of two methods, for h (..., 1); shape (..., N)."""
         stages = self._stages
-        if self._linear is None:
-            self._linear = Linearization(stages.action, stages.psi, stages.m, stages.t, min(stages.method.terms, 2))
         known = stages.through(h, max(i for i, _ in (*stages.numbers.b, *self._weights)) + 1)
         difference: Any = combined(self._weights, known)
         if self._at_start:
             difference = difference + self._gamma * h * self._linear.start
-        return stages.action.infinitesimal(self._linear.solve(self._gamma * h, difference), stages.m)
+        error: Any = stages.action.infinitesimal(applied(self._filter(h), difference), stages.m)
+        return namespace(error).where(self._settled[..., None], error, np.nan) if self.collocates else error
+
+    def estimate_within(self, h: Values, part: Values) -> Values:
+        """The same vectors (..., N) with psi at the time part h, 0 <= part < 1, in place of the start."""
+        k = self._stages.through(h, len(self._collocation.powers))
+        slope: list[Any] = [combined(row, k) for row in self._collocation.powers]
+        u = part * polynomial([x / (j + 1) for j, x in enumerate(slope)], part)
+        difference = self._gamma * (h * self._linear.value(u, part * h) - polynomial(slope, part))
+        return self.action.infinitesimal(applied(self._filter(h), difference), self.action.act(u, self.m))
+
+    def _equation(self, function: Callable[[Any, Any], Any]) -> Equation:
+        """An equation for the stages one by one: a function of a generator or point, and of the time of the stage."""
+        times = self._stages.numbers.c
+        return Equation(
+            lambda y: [function(x, c) for x, c in zip(y, times, strict=True)], [((i, 1.0),) for i in range(len(times))]
+        )
+
+    def _solved(self, h: Values) -> list[Any]:
+        """k_1, ..., k_s with k = A^-1 u, by Newton's method for A^-1 u = k(u); NaN where it finds no solution."""
+        linear, rows, unit = self._linear, self._collocation.inverse, reach_of(self.action)
+        xp, bound = namespace(h, linear.start), SOLVED * unit * self.allowed / length(self.m)
+        equation = self._equation(lambda u, c: h * linear.value(u, c * h))
+
+        def iteration(active: Lanes, u: Lanes, before: Lanes, solved: Lanes) -> list[Lanes]:
+            rest = equation.value(u) - xp.stack([combined(row, u) for row in rows])
+            change: Any = xp.stack(_eliminated(rows, equation.blocks(u), list(rest)))
+            size = xp.sqrt((change * change).sum(axis=(0, -1)))
+            rounded = (size <= ROUNDED * unit) & (size >= before / 2)
+            ends = (size <= unit) & ((size**3 <= bound * before**2) | rounded)  # the next change is about the square
+            good = active & xp.isfinite(size) & ~(ends & (size > ROUNDED * unit) & self._grows(u, change, h))
+            change = xp.where(size > unit, unit / xp.where(size > unit, size, 1.0), 1.0)[..., None] * change
+            return [good & ~ends, xp.where(active[..., None], u + change, u), size, solved | (good & ends)]
+
+        # first the derivative at the start of the step: those at the times of the stages, where the start is far from
+        # the solution, have large derivatives along the isotropy
+        zero: Any = 0.0 * (h * linear.start)
+        rest = [h * linear.psi(linear.m, linear.t + c * h) + zero for c in self._stages.numbers.c]
+        u = xp.stack(_eliminated(rows, [h[..., None] * linear.jacobian] * len(rows), rest))
+        no = zero[..., 0] != 0
+        with np.errstate(over="ignore", invalid="ignore"):
+            _, u, _, self._settled = repeated(
+                iteration, [~no, u, xp.sqrt((u * u).sum(axis=(0, -1))), no], MAX_ITERATIONS
+            )
+        # a kernel rejects the step by its estimate if the point is finite
+        u = xp.where(self._settled[..., None], u, 0.0 if isinstance(h, Traced) else np.nan)
+        return [combined(row, u) for row in rows]
+
+    def _grows(self, u: Lanes, change: Lanes, h: Values) -> Lanes:
+        """Whether X grows at a stage, in the direction of its change, so fast that the step would damp it."""
+        action, linear, xp = self.action, self._linear, namespace(u)
+        flow = self._equation(lambda y, c: action.infinitesimal(linear.psi(y, linear.t + c * h), y))
+        points: Any = xp.stack([action.act(x, self.m) for x in u])
+        d: Any = xp.stack([action.infinitesimal(x, y) for x, y in zip(change, points, strict=True)])
+        growth: Any = self._gamma * h * (flow.along(points, d) * d).sum(axis=-1, keepdims=True)
+        return (growth > (d * d).sum(axis=-1, keepdims=True))[..., 0].any(axis=0)
+
+    def valid(self, h: Values) -> Values | bool:
+        if not self.collocates:
+            return True
+        self._stages.through(h, 1)
+        return self._settled
+
+
+class Collocation(NamedTuple):
+    """The rows of A^-1, and of the polynomial h u'(x h) = sum_j x^j sum_i powers[j][i] k_i of the stages k_i."""
+
+    powers: tuple[SparseRow, ...]
+    inverse: tuple[SparseRow, ...]
+
+
+def _collocation_of(tableau: Tableau) -> Collocation | None:
+    """None if the points of the stages are not those of a polynomial, or one of them is the start."""
+    a, _, c, _ = tableau.to_numpy()
+    power = np.arange(1, len(c) + 1)
+    if not np.allclose(a @ c[:, None] ** (power - 1), c[:, None] ** power / power, rtol=0, atol=1e-10) or not c.all():
+        return None
+    parts = np.linalg.inv(np.vander(c, increasing=True)), np.linalg.inv(a)
+    return Collocation(*(tuple(sparse_row(row) for row in part.tolist()) for part in parts))
+
+
+def _eliminated(rows: Sequence[SparseRow], blocks: Sequence[Any] | Values, rest: list[Any]) -> list[Any]:
+    """x with sum_j rows[i][j] x_j - blocks[i] x_i = rest[i], by elimination of the whole x_i one after the other."""
+    parts: Any = blocks
+    s, one = len(rows), identity(parts[0])
+    m: list[list[Any]] = [
+        [one * dict(row).get(j, 0.0) - (parts[i] if i == j else 0.0) for j in range(s)] for i, row in enumerate(rows)
+    ]
+    for i in range(s):
+        m[i][i] = inverse(m[i][i])
+        for j in range(i + 1, s):
+            factor = m[j][i] @ m[i][i]
+            rest[j] = rest[j] - applied(factor, rest[i])
+            for k in range(i + 1, s):
+                m[j][k] = m[j][k] - factor @ m[i][k]
+    for i in reversed(range(s)):
+        for k in range(i + 1, s):
+            rest[i] = rest[i] - applied(m[i][k], rest[k])
+        rest[i] = applied(m[i][i], rest[i])
+    return rest
 
 
 def _estimate_of(tableau: Tableau) -> tuple[SparseRow, float, bool, int]:

@@ -8,8 +8,9 @@ psi(m, t) at further times within it, at most `gap` apart. Where
 
 the size is cut, and the same series is looked at again. For series of analytic fields the left side is a few times the
 allowed error at most. A method with stages is not compared with a series. Its steps are so short that the times at
-which it asks psi anyway are at most `gap` apart. For psi(m) a point moves by at most `MAX_WAY` |m| in the gap. There a
-series of points is looked at once: it is accurate over about |m| only.
+which it asks psi anyway are at most `gap` apart. A collocation method has a polynomial, and for psi(m, t) its estimate
+of the error is asked for at the looks instead (`looked_within`). For psi(m) a point moves by at most `MAX_WAY` |m| in
+the gap. There a series of points is looked at once: it is accurate over about |m| only.
 
 No method of finitely many looks sees everything: what lies between two of them stays unseen. `max_step` is how users
 say what they know of it.
@@ -106,6 +107,21 @@ def checked(
     residual, wanted, seen = look(size, zero)
     _, cut, _, _, looks, cuts = repeated(again, [wanted, h, zero, residual, zero + 1, zero])
     return cut, looks, cuts, seen
+
+
+def looked_within(local: LocalStep, size: Lanes, gap: Lanes, allowed: Lanes, error: Lanes) -> Lanes:
+    """The estimate of a step with a collocation polynomial, or the first one above `allowed` at looks within it."""
+    h = abs(size[..., 0])
+    xp = namespace(h)
+
+    def look(wanted: Lanes, at: Lanes, error: Lanes) -> list[Lanes]:
+        new = local.estimate_within(size, (at / xp.maximum(h, gap))[..., None])
+        error = xp.where((wanted & ~(squared_length(new) <= squared_length(error)))[..., None], new, error)
+        at = at + gap
+        return [wanted & (at < h) & (squared_length(error) <= allowed * allowed), at, error]
+
+    passes = (gap < h) & (squared_length(error) <= allowed * allowed)
+    return repeated(look, [passes, 0 * h + gap, error])[2]
 
 
 def _within(local: LocalStep, h: Lanes, left: Values, direction: Real) -> Lanes:

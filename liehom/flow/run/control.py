@@ -14,7 +14,7 @@ from liehom.base.errors import ConvergenceError
 from liehom.base.typing import Array, BooleanArray, Lanes, Real, Values
 from liehom.flow.action.field import GeneratorField
 from liehom.flow.action.space import Action
-from liehom.flow.run.check import LOOKS, MAX_WAY, Seen, checked, is_unbounded
+from liehom.flow.run.check import LOOKS, MAX_WAY, Seen, checked, is_unbounded, looked_within
 from liehom.flow.series.arrays import namespace
 from liehom.flow.steps.expansion import flow_series, step_series
 from liehom.flow.steps.step import (
@@ -180,14 +180,15 @@ def tried_size(
     if embedded and limits.gap is not None:
         if is_unbounded(limits.gap):
             moves = min(moves, MAX_WAY / local.widest_gap)
-        else:
+        elif not local.collocates:
             h = xp.minimum(h, limits.gap / local.widest_gap)
     if moves < np.inf:
         h = xp.minimum(h, moves * time_scale(psi.field, m, t))
+    local.allowed = allowed = allowed_error(limits.rtol, limits.atol, m, axes)
     if not embedded:
         if not local.trajectory:  # of a step that has not expanded it
             flow_series(psi.field, m, order + ERROR_TERMS, t).note(local, order + ERROR_TERMS)
-        allowed, speed = allowed_error(limits.rtol, limits.atol, m, axes), over_sites(length(local.trajectory[0]), axes)
+        speed = over_sites(length(local.trajectory[0]), axes)
         if limits.gap is not None and psi.field.time_dependent:
             # terms far below the allowed error are not compared with |X| h, else steps go to 0 at a time when X does
             speed = xp.maximum(speed, allowed / h)
@@ -246,7 +247,10 @@ def judgement(limits: SizeLimits, local: LocalStep, m: Values, size: Lanes, axes
             return True, MAX_GROWTH * tried
         near = over_sites(departure, axes) <= ALLOWED_DEPARTURE * allowed
         return near, namespace(near).where(near, MAX_GROWTH, MAX_SHRINK) * tried
-    return judged(local.estimate(size), allowed, size[..., 0], order, axes)
+    error = local.estimate(size)
+    if local.collocates and limits.gap is not None and not is_unbounded(limits.gap):
+        error = looked_within(local, size, limits.gap, allowed, error)
+    return judged(error, allowed, size[..., 0], order, axes)
 
 
 def judged(error: Values, allowed: Values, h: Values, order: int, axes: int = 0) -> tuple[BooleanArray, Array]:

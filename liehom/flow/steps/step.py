@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from liehom.base.errors import InputError, ShapeError, displayed
 from liehom.base.objects import provider
-from liehom.base.typing import Array, BooleanArray, IntegerArray, Values
+from liehom.base.typing import Array, BooleanArray, IntegerArray, Lanes, Values
 from liehom.flow.action.exponential import Exponential
 from liehom.flow.action.field import GeneratorField, check_point
 from liehom.flow.action.space import Action
@@ -154,6 +154,10 @@ class LocalStep:
         k if `estimate` is O(h^k); None if there is no estimate.
     widest_gap : float
         The longest time between two calls of psi, in units of the step, for a step with an estimate.
+    collocates : bool
+        Whether the step has an estimate by psi at any time within it, `estimate_within`.
+    allowed : array of shape (...,)
+        The error that is allowed in the step, which a run sets: equations need not be solved better.
 
     Examples
     --------
@@ -178,6 +182,8 @@ class LocalStep:
     looks_ahead: bool = False
     estimate_order: int | None = None
     widest_gap: float = 1.0
+    collocates: bool = False
+    allowed: Lanes = 0.0
     clock: tuple[tuple[int, Values], ...] = ()
 
     def __init__(
@@ -240,6 +246,10 @@ class LocalStep:
         step of adaptive size is judged after it is made; None (default) for a step that is not.
         """
         return None
+
+    def estimate_within(self, h: Values, part: Values) -> Values:
+        """Estimate (..., N) of the error by psi at the time part h, part (..., 1), if `collocates`."""
+        raise InputError("the step has no estimate within it: it is not a collocation method")
 
     def valid(self, h: Values) -> Values | bool:
         """Whether the step of size h (..., 1) may be taken, bool (...,): its equations are solved, a rank is reached.

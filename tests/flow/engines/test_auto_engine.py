@@ -85,7 +85,8 @@ def test_python_is_numpy_with_every_kind_of_option(options: dict[str, Any], end:
     plain, made = both(TURNING, (0, end), sphere(2, 1), **options)
     assert np.abs(made.y - plain.y)[np.isfinite(plain.y)].max() < 1e-11 and made.t.shape == plain.t.shape
     np.testing.assert_allclose(made.t, plain.t, rtol=0, atol=1e-11)
-    assert plain.nfev >= made.nfev > 0.9 * plain.nfev  # of the trajectory with the most of them
+    # of the trajectory with the most of them; numpy iterates until the equations of all trajectories are solved
+    assert plain.nfev >= made.nfev > (0.8 if "StiffRKMK" in repr(options) else 0.9) * plain.nfev
     if plain.sol is not None:
         assert np.abs(made.sol(1.3 * np.sign(end)) - plain.sol(1.3 * np.sign(end))).max() < 1e-11
 

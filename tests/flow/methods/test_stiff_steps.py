@@ -14,6 +14,7 @@ from liehom.flow.methods.named import step_named
 from liehom.flow.methods.stability import amplification, stability_limit
 from liehom.flow.methods.stiff import METHODS, ExponentialRosenbrock, Rosenbrock, StiffRKMK
 from liehom.flow.methods.tableaux import radau
+from tests.benchmarks.stiff import systems
 
 RHO = lh.adjoint(lh.so(3))
 W = np.array([1.0, 0.5, 0.2])
@@ -126,6 +127,22 @@ def test_an_ensemble_calls_psi_hardly_more_often_than_its_trajectories() -> None
     assert together.nfev <= 2.5 * max(sol.nfev for sol in alone)  # tried in turn, they are the sum of six numbers
     for i, sol in enumerate(alone):
         assert np.allclose(together.y[i], sol.y, rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize("engine", ["numpy", "llvm"])
+def test_a_long_step_does_not_end_where_its_field_grows(engine: str) -> None:
+    """Without looks steps are so long that their equations have solutions at the antipode too, which L-stable steps
+    take for stable: then errors are 2.
+    """
+    if engine == "llvm":
+        pytest.importorskip("llvmlite")
+    system = systems()[0]
+    ends = [
+        lh.integrate(system.field, (0, 5), system.starts, step=StiffRKMK("radau5"), t_eval=[5.0], engine=engine, **how)
+        for how in ({"rtol": 1e-6, "atol": 1e-6}, {"rtol": 1e-3, "atol": 1e-3, "looks": 0})
+    ]
+    assert (ends[1].statuses == 0).all() and ends[1].n_steps.max() < 40
+    assert np.abs(ends[0].y - ends[1].y).max() < 1e-3
 
 
 @pytest.mark.parametrize("name", ["radau5", "rodas4", "exprb4"])

@@ -133,6 +133,20 @@ def test_an_equation_without_solution_is_reported() -> None:
         solve_implicitly(lambda x: 1 + x * x, np.zeros(1), 1.0)
 
 
+def test_a_branch_that_turns_back_is_not_taken_for_a_solution() -> None:
+    """x = s F(x) from x = 0: for F(0) = 0.3 the branch ends at s = 0.94, although x = F(x) has a solution near 9.
+
+    A trajectory is followed to the end only if it is wanted and all its parts are solved; the others stay at 0.
+    """
+    constants = np.array([0.3, 0.2, 0.2])[None, :, None]
+    equation = Equation(lambda y: [constants[0] + y[0] ** 2 - 0.1 * y[0] ** 3], [((0, 1.0),)])
+    wanted = np.array([True, True, False])[None, :, None]
+    x, reached = newton_module._followed(equation, np.zeros((1, 3, 1)), wanted, 1.0, False)
+    assert reached.ravel().tolist() == [False, True, False]
+    assert x[0, 2, 0] == 0 and 0 < x[0, 0, 0] < 1
+    assert abs(equation.value(x) - x)[0, 1, 0] < 1e-15 and x[0, 1, 0] < 0.5
+
+
 def test_the_error_names_the_trajectories_without_a_solution() -> None:
     constants = np.array([[[0.1], [1.0]], [[3.0], [0.2]]])  # x = c + x^2 has a solution for c <= 1/4
     with pytest.raises(ConvergenceError) as caught:
