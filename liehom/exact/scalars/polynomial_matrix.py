@@ -680,7 +680,6 @@ def _kernel(unknowns: list[int], equations: list[dict[int, int]]) -> list[dict[i
     """A basis of the solutions, each the integers by unknown that are not 0."""
     n = len(unknowns)
     within("memory", 16 * n * len(equations), f"{len(equations)} equations for {n} coefficients need {{}} bytes")
-
     place = {x: i for i, x in enumerate(unknowns)}
 
     def table(p: int) -> IntegerArray:
@@ -700,8 +699,8 @@ def _kernel(unknowns: list[int], equations: list[dict[int, int]]) -> list[dict[i
         kernel = left_kernel(table(p), p)
         return row_basis(residue_matrix(len(kernel), n, kernel.ravel().tolist(), p))
 
-    proposals = rational_lifts(modular, QQ)
-    for proposal in proposals if n * len(equations) < ONE_CALL else chain(rational_lifts(in_parts, QQ), proposals):
+    by_size = [modular] if n * len(equations) < ONE_CALL else [in_parts, modular]
+    for proposal in chain.from_iterable(rational_lifts(make, QQ) for make in by_size):
         entries = [int(x) for x in proposal.parts[0].entries()]
         rows = (entries[i * n : (i + 1) * n] for i in range(proposal.nrows))
         solutions = [{x: c for x, c in zip(unknowns, row, strict=True) if c} for row in rows]
