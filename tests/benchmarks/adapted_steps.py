@@ -1,11 +1,12 @@
 """What a step costs in machine code, in nanoseconds per step and lane: of one size, and of sizes by the tolerance.
 
-    python -m tests.benchmarks.adapted_steps [--fields body S3] [--orders 8] [--errors]
+    python -m tests.benchmarks.adapted_steps [--fields body S3] [--orders 8] [--errors | --looks [--engines numpy]]
 
 What is timed is the difference of two calls of a `Propagator` over spans of which one is longer, so that the call
 itself does not count. Processor time of one thread, the best of several calls. The steps of an ensemble are those that
 its lanes take together. With `--errors`, whole calls: the time by the tolerance alone in units of that of the best
-step of one size and any of the orders 4, 6, 8, 12, 16 with the same median error.
+step of one size and any of the orders 4, 6, 8, 12, 16 with the same median error. With `--looks`, whole calls of
+the default step: the time in units of that without looks at psi within the steps, for fields psi(m, t), too.
 """
 
 from __future__ import annotations
@@ -71,7 +72,25 @@ def quartic() -> Case:
     return Case(field, lambda count, rng: 1 + 0.3 * rng.uniform(-1, 1, (count, n)), 20.0, 0.02)
 
 
+def ramp() -> Case:
+    """A body with a torque that grows in time."""
+    inertia, torque = np.array([1.0, 1.7, 2.9]), np.array([0.02, 0.0, 0.01])
+    field = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m, t: -m / inertia + t[..., None] * torque)
+    return Case(field, body().start, 100.0, 0.8)
+
+
+def driven() -> Case:
+    """A body in a field that turns."""
+    inertia, x, y = np.array([1.0, 1.7, 2.9]), np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0])
+
+    def psi(m: Any, t: Any) -> Any:
+        return -m / inertia + np.cos(t)[..., None] * x + np.sin(t)[..., None] * y
+
+    return Case(lh.GeneratorField(lh.adjoint(lh.so(3)), psi), body().start, 100.0, 0.8)
+
+
 CASES = {"body": body, "S3": sphere3, "S4": sphere4, "quartic": quartic}
+TIMED = {"ramp": ramp, "driven": driven}
 
 
 def least(call: Callable[[], object], rounds: int = ROUNDS) -> float:
@@ -139,15 +158,37 @@ def at_equal_error(case: Case, lanes: int, rtol: float) -> tuple[float, float, f
     return error, 1e6 * spent, spent / best
 
 
+def with_looks(case: Case, engine: str, lanes: int, rtol: float) -> tuple[float, float, int]:
+    """(milliseconds of a call without looks, and with them, steps of the longest trajectory)."""
+    propagator, y = lh.Propagator(case.field, engine=engine), case.start(lanes, np.random.default_rng(1))
+    spent, steps = [np.inf, np.inf], 0
+    for _ in range(3 * ROUNDS):  # by turns, so that another program delays both
+        for k, options in enumerate(({"looks": 0}, {})):
+            begin = time.process_time_ns()
+            found = propagator((0.0, case.span), y, t_eval=[case.span], rtol=rtol, atol=1e-3 * rtol, **options)
+            spent[k] = min(spent[k], (time.process_time_ns() - begin) / 1e6)
+            steps = int(np.max(found.n_steps))
+    return *spent, steps
+
+
 def main(arguments: Sequence[str] | None = None) -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--fields", nargs="+", default=list(CASES), choices=CASES)
+    parser.add_argument("--fields", nargs="+", choices=[*CASES, *TIMED])
     parser.add_argument("--orders", nargs="+", type=int, default=(8, 12))
     parser.add_argument("--errors", action="store_true")
+    parser.add_argument("--looks", action="store_true")
+    parser.add_argument("--engines", nargs="+", default=("llvm", "numpy"), choices=("llvm", "numpy"))
     chosen = parser.parse_args(arguments)
     os.environ["LIEHOM_NUM_THREADS"] = "1"
-    for name in chosen.fields:
-        case = CASES[name]()
+    for name in chosen.fields or [*CASES, *(TIMED if chosen.looks else [])]:
+        case = (CASES | TIMED)[name]()
+        if chosen.looks:
+            for engine, lanes in ((e, {"llvm": 512, "numpy": 16}[e]) for e in chosen.engines):
+                for rtol in (1e-4, 1e-6, 1e-9):
+                    without, spent, steps = with_looks(case, engine, lanes, rtol)
+                    text = f"{without:7.1f} ms, with looks {spent:7.1f} ms, {spent / without:.2f}; {steps} steps"
+                    print(f"{name:8} {engine:5} N {lanes:4} rtol {rtol:g}: {text}", flush=True)
+            continue
         if chosen.errors:
             for lanes in (1, 1000):
                 for rtol in (1e-3, 1e-6, 1e-9, 1e-12):

@@ -3,7 +3,10 @@
     python -m tests.campaigns.checked_steps [--engine numpy] [--step default] [--looks 128] [--part 0/4] OUT.json
     python -m tests.campaigns.checked_steps --engine scipy --step DOP853 OUT.json
     python -m tests.campaigns.checked_steps report OUT.json ...
+    python -m tests.campaigns.checked_steps table [--only "llvm rk45" ...] [--render]
 
+`table` runs rows of the table of docs/step-sizes.md, each an engine with a step, all of them if none is named. Their
+figures are kept in docs/_static/checked_steps.json after every row, and the table of the page is written again.
 The fields are those of `checked_fields.py`. A run is wrong if it reports success and its error at the end is above
 100 times the larger of the tolerance there, atol sqrt(N) + rtol |m|, and the error of scipy's DOP853 with the same
 tolerances and steps of at most twice the narrowest feature; the second bound is for fields that amplify errors.
@@ -20,6 +23,7 @@ import argparse
 import hashlib
 import inspect
 import json
+import os
 import sys
 import tempfile
 import time
@@ -40,6 +44,18 @@ FACTOR = 100.0
 RESOLVED = 1 / 250  # width in units of the span that a checked step is expected to see, counted as "wide"
 MOST_STEPS = 20_000
 ENGINES = ("numpy", "llvm", "jax")
+DATA = Path(__file__).resolve().parents[2] / "docs" / "_static" / "checked_steps.json"
+PROGRAMS = {
+    'the default, `engine="numpy"`': "numpy default",
+    'the default, `engine="llvm"`': "llvm default",
+    'the default, `engine="jax"`': "jax default",
+    "`LieTaylor(6)`": "llvm lietaylor:6",
+    "`Corrected(Euler(), 4)`": "llvm corrected:4",
+    **{f'`"{name}"`': f"llvm {name}" for name in ("rk45", "dop853", "rodas4", "radau5")},
+    **{f"scipy {name}": f"scipy {name}" for name in ("DOP853", "LSODA", "RK45")},
+    "heyoka.py": "heyoka taylor",
+}
+"""The rows of the table: a program as the page names it, and the engine and the step of its runs."""
 Row = dict[str, Any]
 
 
@@ -242,7 +258,8 @@ def is_wrong(row: Row) -> bool:
 
 def summary(found: Iterable[Row]) -> Row:
     """The figures of the rows of one program, step and tolerance."""
-    table, smooth = list(found), [row for row in found if row["smooth"]]
+    table = list(found)
+    smooth = [row for row in table if row["smooth"]]
     ran = [row for row in table if row["error"] is not None]
     wrong = [row for row in ran if is_wrong(row)]
     return {
@@ -286,9 +303,87 @@ def report(paths: Sequence[Path], most: int) -> str:
     return "\n".join([*lines, "", *details])
 
 
+def fits(group: Group, engine: str) -> bool:
+    """Whether a program runs the fields of a group; jax compiles for minutes, so it runs those in ensembles only."""
+    return not (engine == "heyoka" and group.name in BRANCHING) and not (engine == "jax" and not group.args)
+
+
+def measured(
+    some: Iterable[Group], engine: str, step: str, rtols: Sequence[float], options: dict[str, Any], stored: References
+) -> list[Row]:
+    """The rows of all fields that the program runs, at all tolerances."""
+    if engine == "jax":  # else it compiles for an hour
+        os.environ.setdefault("XLA_FLAGS", "--xla_backend_optimization_level=0")
+    found: list[Row] = []
+    for group in some:
+        if fits(group, engine):
+            known = stored.of(group)
+            stored.write()
+            for rtol in rtols:
+                found += rows(group, engine, step, rtol, options, known)
+    return found
+
+
+# -- the table of the page -------------------------------------------------------------------------------
+
+
+def figures(found: Sequence[Row], engine: str) -> Row:
+    """What the page needs of a program: numbers by tolerance, and the wide runs of liehom that are wrong."""
+    by_rtol = [summary(row for row in found if row["rtol"] == rtol) for rtol in RTOLS]
+    smooth = [sum(row["smooth"] for row in found if row["rtol"] == rtol) for rtol in RTOLS]
+    return {
+        "date": time.strftime("%Y-%m-%d"),
+        **{name: [x[name] for x in by_rtol] for name in ("runs", "refused", "failed", "wrong", "wide")},
+        "smooth steps": [round(x["smooth steps"] / n, 1) for x, n in zip(by_rtol, smooth, strict=True)],
+        "wide runs": [
+            [row["field"], row["rtol"], round(1 / row["width"]), round(row["error"] / row["tolerance"]), row["steps"]]
+            for row in found
+            if engine in ENGINES and row["error"] is not None and is_wrong(row) and row["width"] >= RESOLVED
+        ],
+    }
+
+
+def page_table() -> str:
+    """One line for each program that has figures; three numbers are for the three tolerances."""
+    known = json.loads(DATA.read_text(encoding="utf-8"))
+    names = ("runs", "refused", "failed", "wrong", "wide", "smooth steps")
+    lines = ["| program | fields | refused | failed | wrong | wide | steps |", "|---|" + "---:|" * len(names)]
+    for title, row in ((title, known[row]) for title, row in PROGRAMS.items() if row in known):
+        cells = [", ".join(f"{x:.0f}" for x in (row[k][:1] if len(set(row[k])) == 1 else row[k])) for k in names]
+        lines.append(f"| {' | '.join([title, *cells])} |")
+    return "\n".join(lines)
+
+
+def table(given: Sequence[str]) -> None:
+    """Run rows of the table, and write the file and the page again."""
+    from tests.campaigns import report as pages
+
+    parser = argparse.ArgumentParser(description="The table of docs/step-sizes.md.")
+    parser.add_argument("--only", nargs="+", choices=PROGRAMS.values(), default=list(PROGRAMS.values()))
+    parser.add_argument("--references", type=Path, default=STORED)
+    parser.add_argument("--render", action="store_true", help="run nothing")
+    chosen = parser.parse_args(given)
+    for program in [] if chosen.render else chosen.only:
+        engine, step = program.split()
+        new = figures(measured(groups(2031), engine, step, RTOLS, {}, References(chosen.references)), engine)
+        known = json.loads(DATA.read_text(encoding="utf-8")) if DATA.exists() else {}  # others may have written it
+        known = {row: new if row == program else known.get(row) for row in PROGRAMS.values()}
+        text = ",\n".join(f'"{row}": {json.dumps(x)}' for row, x in known.items() if x)
+        DATA.write_text(f"{{\n{text}\n}}\n", encoding="utf-8")
+        pages.main()
+        print(program, json.dumps(new), f"{time.process_time():.0f} s", flush=True)
+    pages.main()
+
+
+STORED = Path(tempfile.gettempdir()) / "liehom-checked-references.json"
+
+
 def main(arguments: Sequence[str] | None = None) -> None:
     given = list(sys.argv[1:] if arguments is None else arguments)
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    if given[:1] == ["table"]:
+        table(given[1:])
+        return
     if given[:1] == ["report"]:
         parser.add_argument("paths", type=Path, nargs="+")
         parser.add_argument("--most", type=int, default=40, help="wrong and failed runs that are listed of each table")
@@ -304,21 +399,13 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--rtol", type=float, nargs="+", choices=RTOLS, default=RTOLS)
     parser.add_argument("--seed", type=int, default=2031)
     parser.add_argument("--part", default="0/1", help="k/n: every n-th group from number k on")
-    stored = Path(tempfile.gettempdir()) / "liehom-checked-references.json"
-    parser.add_argument("--references", type=Path, default=stored)
+    parser.add_argument("--references", type=Path, default=STORED)
     parser.add_argument("output", type=Path)
     chosen = parser.parse_args(given)
     first, parts = map(int, chosen.part.split("/"))
     options = {} if chosen.looks is None else {"looks": chosen.looks}
-    references, found = References(chosen.references), []
     some = [group for group in groups(chosen.seed) if chosen.fields in group.name][first::parts]
-    for group in some:
-        if group.name in BRANCHING and chosen.engine == "heyoka":
-            continue  # it has no expressions with branches
-        known = references.of(group)
-        for rtol in chosen.rtol:
-            found += rows(group, chosen.engine, chosen.step, rtol, options, known)
-        references.write()
+    found = measured(some, chosen.engine, chosen.step, chosen.rtol, options, References(chosen.references))
     data = {"engine": chosen.engine, "step": chosen.step, "looks": chosen.looks, "seed": chosen.seed, "rows": found}
     chosen.output.write_text(json.dumps(data, indent=0) + "\n", encoding="utf-8")
     print(report([chosen.output], 10))

@@ -1,8 +1,8 @@
-"""The tables of docs/reliability.md, from the figures of the campaigns and the limits of the library.
+"""The tables of docs/reliability.md and docs/step-sizes.md, from the figures of campaigns and the limits of liehom.
 
     python -m tests.campaigns.report
 
-rewrites the text between the markers ``<!-- begin NAME -->`` and ``<!-- end NAME -->`` of the page. A campaign without
+rewrites the text between the markers ``<!-- begin NAME -->`` and ``<!-- end NAME -->`` of the pages. A campaign without
 figures has no table.
 """
 
@@ -14,10 +14,9 @@ from pathlib import Path
 from typing import Any
 
 import liehom as lh
-from tests.campaigns import certificates, doors
+from tests.campaigns import certificates, checked_steps, doors
 
 ROOT = Path(__file__).resolve().parent.parent.parent
-PAGE = ROOT / "docs" / "reliability.md"
 FIGURES = Path(__file__).with_name("figures")
 Json = Any
 
@@ -93,27 +92,31 @@ def certificates_table() -> str:
     return "" if data is None else certificates.table(certificates.Campaign.from_json(data))
 
 
-TABLES: dict[str, Callable[[], str]] = {
-    "limits": limits_table,
-    "doors": doors_table,
-    "certificates": certificates_table,
-    "damage": damage_table,
+PAGES: dict[Path, dict[str, Callable[[], str]]] = {
+    ROOT / "docs" / "reliability.md": {
+        "limits": limits_table,
+        "doors": doors_table,
+        "certificates": certificates_table,
+        "damage": damage_table,
+    },
+    ROOT / "docs" / "step-sizes.md": {"checked steps": checked_steps.page_table},
 }
 
 
-def rewritten(page: str) -> str:
-    for name, made in TABLES.items():
+def rewritten(page: str, tables: dict[str, Callable[[], str]]) -> str:
+    for name, made in tables.items():
         begin, end = f"<!-- begin {name} -->\n", f"<!-- end {name} -->"
         before, _, rest = page.partition(begin)
         _, found, after = rest.partition(end)
         if not found:
-            raise ValueError(f"{PAGE.name} has no markers {begin.strip()} and {end}")
+            raise ValueError(f"the page has no markers {begin.strip()} and {end}")
         page = f"{before}{begin}\n{made()}\n\n{end}{after}"
     return page
 
 
 def main() -> None:
-    PAGE.write_text(rewritten(PAGE.read_text(encoding="utf-8")), encoding="utf-8")
+    for page, tables in PAGES.items():
+        page.write_text(rewritten(page.read_text(encoding="utf-8"), tables), encoding="utf-8")
 
 
 if __name__ == "__main__":

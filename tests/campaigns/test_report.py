@@ -1,18 +1,21 @@
-"""The page on reliability is what the script makes of the figures."""
+"""The pages are what the script makes of the figures."""
+
+from pathlib import Path
 
 import pytest
 
 from tests.campaigns import doors, report
 
 
-def test_the_page_is_what_the_script_writes() -> None:
-    page = report.PAGE.read_text(encoding="utf-8")
-    assert page == report.rewritten(page), "run python -m tests.campaigns.report"
+@pytest.mark.parametrize("page", report.PAGES, ids=lambda page: page.stem)
+def test_a_page_is_what_the_script_writes(page: Path) -> None:
+    text = page.read_text(encoding="utf-8")
+    assert text == report.rewritten(text, report.PAGES[page]), "run python -m tests.campaigns.report"
 
 
 def test_a_page_without_markers_is_refused() -> None:
     with pytest.raises(ValueError, match="begin limits"):
-        report.rewritten("# Reliability\n")
+        report.rewritten("# Reliability\n", {"limits": report.limits_table})
 
 
 def test_the_figures_have_no_offender_and_count_right() -> None:

@@ -9,23 +9,32 @@ from __future__ import annotations
 
 import functools
 import random
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from functools import cached_property
-from itertools import combinations, combinations_with_replacement, product
+from itertools import chain, combinations, combinations_with_replacement, islice, product
 from math import comb, gcd, lcm, prod
 from operator import mul
 from typing import NamedTuple, TypeAlias, cast, final
 
 import flint
+import numpy as np
 
 from liehom.base.budget import in_time, within
 from liehom.base.errors import FieldError, InputError, InternalError, ShapeError
-from liehom.base.typing import Expression, ScalarLike
+from liehom.base.typing import Expression, IntegerArray, ScalarLike
 from liehom.exact.scalars.exact_field import ExactField, ExactMatrix
 from liehom.exact.scalars.field import Scalar
 from liehom.exact.scalars.function_field import common_divisor, content
-from liehom.exact.scalars.modular import null_rows, pivot_columns, rational_lifts, residue_matrix, row_basis
+from liehom.exact.scalars.modular import (
+    left_kernel,
+    null_rows,
+    pivot_columns,
+    rational_lifts,
+    residue_matrix,
+    row_basis,
+    splitting_primes,
+)
 from liehom.exact.scalars.polynomial import Polynomial, horner
 from liehom.exact.scalars.rational import QQ
 
@@ -623,6 +632,7 @@ IntegerTerms: TypeAlias = dict[Monomial, int]
 """A polynomial with integer coefficients, by monomials."""
 
 MAX_MULTIPLES = 800  # of the denominator, among which one without negative coefficients above is looked for
+ONE_CALL = 1 << 20  # entries of a system of equations up to which flint solves it in one call, which has no deadline
 LARGE_POINT = 1 << 40  # bound on the coordinates of a random point
 
 
@@ -670,17 +680,27 @@ def _kernel(unknowns: list[int], equations: list[dict[int, int]]) -> list[dict[i
     """A basis of the solutions, each the integers by unknown that are not 0."""
     n = len(unknowns)
     within("memory", 16 * n * len(equations), f"{len(equations)} equations for {n} coefficients need {{}} bytes")
+    place = {x: i for i, x in enumerate(unknowns)}
 
-    def entries_modulo(p: int) -> Iterator[int]:
-        for x in unknowns:
+    def table(p: int) -> IntegerArray:
+        residues: IntegerArray = np.zeros((n, len(equations)), dtype=np.int64)
+        for j, equation in enumerate(equations):
             in_time()
-            yield from (row.get(x, 0) % p for row in equations)
+            residues[[place[x] for x in equation], j] = [c % p for c in equation.values()]
+        return residues
 
     def modular(attempt: int) -> flint.nmod_mat:
         p = QQ.residue(attempt)[0]
-        return row_basis(null_rows(residue_matrix(n, len(equations), entries_modulo(p), p)))
+        return row_basis(null_rows(residue_matrix(n, len(equations), table(p).ravel().tolist(), p)))
 
-    for proposal in rational_lifts(modular, QQ):
+    def in_parts(attempt: int) -> flint.nmod_mat:
+        """The same modulo a small prime, by an elimination that ends with the deadline."""
+        p = next(islice(splitting_primes(QQ), attempt, None))[0]
+        kernel = left_kernel(table(p), p)
+        return row_basis(residue_matrix(len(kernel), n, kernel.ravel().tolist(), p))
+
+    by_size = [modular] if n * len(equations) < ONE_CALL else [in_parts, modular]
+    for proposal in chain.from_iterable(rational_lifts(make, QQ) for make in by_size):
         entries = [int(x) for x in proposal.parts[0].entries()]
         rows = (entries[i * n : (i + 1) * n] for i in range(proposal.nrows))
         solutions = [{x: c for x, c in zip(unknowns, row, strict=True) if c} for row in rows]

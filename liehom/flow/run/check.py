@@ -146,7 +146,7 @@ def repeated(body: Callable[..., list[Any]], state: list[Any], limit: int = MAX_
             state,
         )
     for _ in range(limit):
-        if not np.any(state[0]):
+        if not state[0].any():
             break
         state = body(*state)
     return state

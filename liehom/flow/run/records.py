@@ -251,7 +251,7 @@ class StepStatistics:
                 if lost.any():
                     self.unkept_from = np.where(lost & np.isnan(self.unkept_from), t, self.unkept_from)
                 continue
-            old, new = self._total(name, kind), np.broadcast_to(np.asarray(value, dtype=float), self._shape)
+            old, new = self._total(name, kind), np.asarray(value, dtype=float)
             better = active & (new != 0 if kind == "sum" else new > old if kind == "max" else new < old)
             if not better.any():
                 continue

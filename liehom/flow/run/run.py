@@ -20,7 +20,7 @@ from liehom.flow.action.field import GeneratorField
 from liehom.flow.action.fingerprint import events_by_name, fingerprint, stable_repr
 from liehom.flow.action.space import Action
 from liehom.flow.run import solution as files
-from liehom.flow.run.check import gap_of
+from liehom.flow.run.check import Seen, gap_of
 from liehom.flow.run.control import (
     ERROR_TERMS,
     MAX_SHRINK,
@@ -250,6 +250,7 @@ class Run:
         self.rest = self.dtype.type(8 * np.finfo(self.dtype).eps * max(abs(span[0]), abs(span[1])))
         self.tiny = max(float(self.rest), options.least_step)  # the smallest step size
         self.looked: Diagnostics = {}  # what the last step was checked by
+        self.seen: Seen | None = None  # a look of the last step at its point
         self.limits: SizeLimits = SizeLimits(
             options.rtol, options.atol, options.max_step, span[1], self.direction, self.tiny,
             gap=gap_of(options.looks, span[1] - span[0], psi.field),
@@ -292,7 +293,9 @@ class Run:
         size = self._size(now, local) if self.options.dt is None else self.options.dt
         h, after, last = self._fitted(now, local, size)
         self.tried = local, h
-        reached: Any = local.point(h[..., None])
+        seen = self.seen
+        known = seen is not None and h.dtype == seen.size.dtype and (h == seen.size).all()
+        reached: Any = seen.point if seen is not None and known else local.point(h[..., None])
         moves = now.active
         if adaptive:
             accepted, now.h = judgement(self.limits, local, now.m, h[..., None], self.axes)
@@ -317,9 +320,10 @@ class Run:
         limits = self.limits
         if local.estimate_order is not None and np.isinf(now.h).any():
             now.h = np.where(np.isinf(now.h), first_size(limits, local, self.psi, now.m, now.t), now.h)
-        h, good, looks, cuts, _ = tried_size(
+        h, good, looks, cuts, seen = tried_size(
             limits, self.action, self.psi, local, self.step.order, now.m, now.t, now.h, self.psi.field
         )
+        self.seen = seen if local.looks_ahead else None
         h = np.asarray(h).astype(self.dtype)
         self.looked = {"looks": (looks, "sum"), "cuts": (cuts, "sum")}
         small = now.active & ~good

@@ -147,3 +147,14 @@ def test_seconds_end_a_search_of_many_monomials() -> None:
     with lh.limits(seconds=0.2), pytest.raises(LimitError, match="seconds"):
         invariant_polynomials(actions, 21, 4)
     assert time.process_time() - start < 2
+
+
+def test_a_large_system_has_the_solutions_of_one_call_of_flint(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name, degree in (("sl(3)", 3), ("e(3)", 2), ("sl(2)+heisenberg(3)", 2)):
+        g = lh.catalog.algebra(name)
+        g = g.change_of_basis(random_unimodular(g.dimension, random.Random(5), 3 * g.dimension))
+        actions = [as_exact(g.ad(row)).T for row in g.field.identity(g.dimension).to_rows()]
+        whole = invariant_polynomials(actions, g.dimension, degree)
+        with monkeypatch.context() as patch:
+            patch.setattr("liehom.exact.scalars.polynomial_matrix.ONE_CALL", 0)
+            assert invariant_polynomials(actions, g.dimension, degree) == whole != []
