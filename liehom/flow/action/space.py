@@ -7,7 +7,7 @@ from __future__ import annotations
 from copy import copy
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any, NamedTuple, final, overload
+from typing import Any, final, overload
 
 import numpy as np
 
@@ -16,7 +16,6 @@ from liehom.base.typing import Array, BooleanArray, IntegerArray, Values, Values
 from liehom.flow.action.custom_exponential import ExponentialLike, exponential_of
 from liehom.flow.action.exponential import Exponential
 from liehom.flow.action.frames import InnerProduct, TightFrame, inner_product, orthogonal_decomposition
-from liehom.flow.action.invariants import GRADIENT_RTOL, LARGEST_SIZE, invariant_form
 from liehom.flow.action.maps import FieldMap, action_map, bracket_map, matrices_of
 from liehom.flow.door import Representation, copies_of
 from liehom.flow.series.arrays import is_jax, namespace
@@ -210,81 +209,12 @@ def _towards_orthonormal(a: Values) -> Values:
     return (3 * np.eye(a.shape[-1], dtype=a.dtype) - np.swapaxes(a, -1, -2) @ a) / 2
 
 
-# The inverse of x -> rho(x) m in closed form, on orbits on which all its singular values agree.
-#
-# Let K be an invariant symmetric form on V and G the inner product on g, with A = [rho(e_1) m, ..., rho(e_r) m]. If
-#
-#     A G^-1 A^T K A = lambda A,      lambda = tr(A G^-1 A^T K) / d,      d the dimension of the orbit,
-#
-# then B = G^-1 A^T K / lambda is a right inverse of A on the tangent space, and B A is the projector along the isotropy
-# algebra. This is so if the isotropy acts irreducibly on the tangent space, as on spheres, projective spaces and other
-# irreducible symmetric orbits.
+# Tight frames: orbits on which all singular values of x -> rho(x) m agree.
 
 TIGHT_RTOL = 1e-11
-"""Largest defect of the condition, relative to lambda and the largest entry of A."""
+"""Largest defect of a condition, relative to its terms."""
 SAMPLES = 16
 """Number of points at least that are moved along their orbits; fewer initial points are used several times."""
-
-
-class TightInverse(NamedTuple):
-    """Data of B = G^-1 A^T K / lambda."""
-
-    form: Array  # K, (N, N)
-    gram_inverse: Array  # G^-1, (dim g, dim g)
-    trace: Array  # (N, N): the form m -> tr(A G^-1 A^T K) / d, which is lambda
-    constant: bool  # whether lambda is constant along orbits
-
-    def over(self, m: Values) -> Values:
-        """1 / lambda at points m (..., N), shape (...,); for a tracer a constant of the trajectory if it is one."""
-        trace = self.trace
-
-        def inverse(points: Values) -> Values:
-            return 1.0 / ((points @ trace) * points).sum(axis=-1)
-
-        if self.constant and isinstance(m, Traced):
-            return Traced(m.tape, m.tape.trajectory_constant(inverse))
-        return inverse(m)
-
-    def lifted(self, action: Action, m: Values, v: Values, over: Values) -> Values:
-        """B v at the point m, shape (..., dim g), for v of shape (..., N) and 1 / lambda of shape (...,)."""
-        return (action.infinitesimal.right_transposed(m, v @ self.form) @ self.gram_inverse) * over[..., None]
-
-
-def tight_inverse(action: Action, points: Array, rank: int) -> TightInverse | None:
-    """The inverse on the orbits of points, all of one dimension, or None if it has no closed form."""
-    size = action.representation.size
-    flat = points.reshape(-1, size)
-    if rank < 1 or not len(flat) or size > LARGEST_SIZE[2]:
-        return None
-    matrices = matrices_of(action.representation)
-    form = invariant_form(matrices / max(float(np.abs(matrices).max(initial=0.0)), 1e-300))
-    if form is None:
-        return None
-    gram_inverse = np.linalg.inv(action.inner_product.matrix).astype(np.float64)
-    corners = np.asarray(action.infinitesimal.right(np.eye(size)))
-    trace = (corners @ gram_inverse).reshape(size, -1) @ (form.T @ corners).reshape(size, -1).T / rank
-    inverse = TightInverse(form, gram_inverse, (trace + trace.T) / 2, action.inner_product.invariant)
-    if not inverse.constant:
-        rows = np.arange(max(len(flat), SAMPLES)) % len(flat)
-        x = np.random.default_rng(0).normal(size=(len(rows), action.dimension)) / max(1.0, action.max_norm)
-        flat = np.concatenate([flat, np.asarray(action.act(x, flat[rows]))])
-    return inverse if _holds(action, inverse, flat) else None
-
-
-def _holds(action: Action, inverse: TightInverse, points: Array) -> bool:
-    """Whether A G^-1 A^T K A = lambda A with lambda other than 0 at points (L, N), to round-off."""
-    points = points / np.abs(points).max(axis=-1, keepdims=True)  # the condition is that of all multiples of a point
-    columns = action.infinitesimal.right(points)
-    scale = np.abs(over := ((points @ inverse.trace) * points).sum(axis=-1))
-    square = columns @ inverse.gram_inverse @ np.swapaxes(columns, 1, 2)
-    # lambda is at most |K| |A G^-1 A^T|, and 0 for a form that vanishes on the tangent space
-    least = GRADIENT_RTOL * np.linalg.norm(inverse.form, 2) * np.linalg.norm(square, axis=(1, 2))
-    defect = np.abs(square @ inverse.form @ columns - over[:, None, None] * columns).max(axis=(1, 2), initial=0.0)
-    return bool(
-        ((scale > least) & (defect <= TIGHT_RTOL * scale * np.abs(columns).max(axis=(1, 2), initial=0.0))).all()
-    )
-
-
 POINTS_AT_ONCE = 4096
 """Points whose matrices are in memory at once."""
 OWN_STREAM = 20011

@@ -21,7 +21,7 @@ from liehom.base.typing import Array, BooleanArray, IntegerArray, Values
 from liehom.flow.action.exponential import TrueExponential
 from liehom.flow.action.field import GeneratorField
 from liehom.flow.action.invariants import InvariantLanding, Quadrics, invariant_landing, quadric_orbits
-from liehom.flow.action.space import Action, TightInverse, tight_inverse
+from liehom.flow.action.space import Action
 from liehom.flow.series.arrays import coarse, is_traced, namespace
 from liehom.flow.series.jet import Jet
 from liehom.flow.series.quadratic import AffineFlow, affine_flow
@@ -52,7 +52,6 @@ class Landing(NamedTuple):
     """Data for the landing on the orbits of a run; by exponentials if there are neither quadrics nor invariants."""
 
     quadrics: Quadrics | None  # onto whose level sets points are projected
-    inverse: TightInverse | None  # of x -> rho(x) m in closed form; if None, by an orthogonal decomposition
     invariants: InvariantLanding | None  # by repetition of an equivariant map
 
 
@@ -132,10 +131,10 @@ class Taylor(Step):
         velocity = [flow.psi(k) for k in range(self.order)]
         if error_terms and isinstance(m, np.ndarray):  # psi = sqrt(t) has no derivative at 0, and steps by tolerance
             points, velocity = _finite(points), _finite(velocity)
-        quadrics, inverse, invariants = self._landing
+        quadrics, invariants = self._landing
         if quadrics is not None:
             return ProjectedSeries(action, m, points, quadrics, psi.start)
-        landed = LandedSeries(action, m, points, velocity, psi.orbit_dimension, inverse)
+        landed = LandedSeries(action, m, points, velocity, psi.orbit_dimension)
         return landed if invariants is None else InvariantSeries(landed, invariants, psi.start)
 
     @property
@@ -143,21 +142,19 @@ class Taylor(Step):
         """How points are landed."""
         if self._landing is None:
             return None
-        quadrics, inverse, invariants = self._landing
-        return quadrics is None, inverse is None, None if invariants is None else invariants.key
+        quadrics, invariants = self._landing
+        return quadrics is None, None if invariants is None else invariants.key
 
     def prepare(self, action: Action, psi: Generator, m: Values, t: Values) -> Taylor:
         """The step with the landing on the orbits of a run."""
         start: Any = psi.start if psi.start is not None else m
         points = np.zeros((0, m.shape[-1])) if is_traced(start) else np.asarray(start)
-        inverse, invariants = None, None
+        invariants = None
         quadrics = quadric_orbits(action.representation, psi.orbit_dimension, points)
         dimensions = np.unique(psi.orbit_dimension)
         if quadrics is None and len(dimensions) == 1 and points.dtype.kind == "f":
             invariants = invariant_landing(action.representation, int(dimensions[0]), points)
-            if invariants is None and points.dtype == np.float64:
-                inverse = tight_inverse(action, points, int(dimensions[0]))
-        return self.with_prepared(_landing=Landing(quadrics, inverse, invariants))
+        return self.with_prepared(_landing=Landing(quadrics, invariants))
 
 
 class TaylorSeries(LocalStep):
@@ -238,10 +235,9 @@ class LandedSeries(TaylorSeries):
         coefficients: Sequence[Values],
         velocity: Sequence[Values],
         orbit_dimension: int | IntegerArray,
-        inverse: TightInverse | None = None,
     ) -> None:
         super().__init__(action, m, coefficients)
-        self._dimension, self._inverse, self._velocity = orbit_dimension, inverse, velocity
+        self._dimension, self._velocity = orbit_dimension, velocity
         magnus = MAGNUS_ORDER if isinstance(action.exponential, TrueExponential) else SECOND_ORDER
         # corrections of eta: with q - 1 the order of Exp(xi(h)) m, the error is O(h^(q (j + 1))) after j of them
         self.iterations: int = ceil((len(coefficients) + 1) / (magnus + 1)) - 1
@@ -263,21 +259,13 @@ class LandedSeries(TaylorSeries):
         near = self.action.act(self.generator(h), self.m)
         if not self.iterations:
             return near
-        wanted, lifted = self.series(h), self._lift(near)
+        wanted, frame = self.series(h), self.action.isotropy_frame(near, self._dimension)
         eta, landed = None, near
         for _ in range(self.iterations):
-            change = lifted(wanted - landed)
+            change = least_generator(frame, wanted - landed)
             eta = change if eta is None else eta + change
             landed = self.action.act(eta, near)
         return landed
-
-    def _lift(self, point: Values) -> Callable[[Values], Values]:
-        """The map v -> x of smallest norm with rho(x) m the tangential part of v, at a point m."""
-        if self._inverse is not None:
-            inverse, over = self._inverse, self._inverse.over(self.m if isinstance(self.m, Traced) else point)
-            return lambda v: inverse.lifted(self.action, point, v, over)
-        frame = self.action.isotropy_frame(point, self._dimension)
-        return lambda v: least_generator(frame, v)
 
 
 @final

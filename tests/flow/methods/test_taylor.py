@@ -49,7 +49,7 @@ def run(manifold: str, step: Any, count: int, *, change: Any = None, by_exponent
     h = np.full((len(m), 1), np.longdouble(p.t) / count)
     for i in range(count):
         if by_exponentials:
-            step = step.with_prepared(_landing=Landing(None, None, None))
+            step = step.with_prepared(_landing=Landing(None, None))
         local = step.at(action, psi, m, i * h)
         if change is not None:
             change(local)
