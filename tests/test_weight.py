@@ -52,6 +52,14 @@ WEIGHTS: tuple[tuple[int, int, int, str], ...] = (
         "for everybody who reads the code: what no page shows and nobody calls left, runs, events, tables and landings "
         "stand once; quaternions for ROS and matrices of Heisenberg algebras, for roboticists and lecturers",
     ),
+    (
+        91373,
+        49119,
+        306,
+        "stiff collocation steps as long as their error allows, for fields with several time scales; ensembles in blocks of "
+        "one pace; adaptive Corrected runs that keep the tolerance or are refused, for those who build correctors; the "
+        "linear correction of Conserving, an inverse for a few orbits and a loop of Python left",
+    ),
 )
 """Lines, statements (of Python, without docstrings) and files of Python and stubs, the latest last, and for whom."""
 SLACK = 0.005  # what has become lighter by more than this share is written down

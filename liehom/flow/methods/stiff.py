@@ -136,9 +136,6 @@ class StiffRKMK(OneExponential):
     def order(self) -> int:
         return self.tableau.order
 
-    def generator(self, action: Action, psi: Generator, m: Values, t: Values, h: Values) -> Values:
-        return self._base.generator(action, psi, m, t, h)
-
     def at(self, action: Action, psi: Generator, m: Values, t: Values, *, error_terms: int = 0) -> LocalStep:
         stages = Stages(self._base, action, psi, m, t, hasty=error_terms > 0)  # sizes are adaptive
         few = len(self.tableau.b) * action.dimension <= MAX_TRACED and not psi.field.sites
@@ -385,9 +382,6 @@ class Rosenbrock(OneExponential):
     def order(self) -> int:
         return METHODS[self.name].order
 
-    def generator(self, action: Action, psi: Generator, m: Values, t: Values, h: Values) -> Values:
-        return self.at(action, psi, m, t).factors(h)[0]
-
     def at(self, action: Action, psi: Generator, m: Values, t: Values, *, error_terms: int = 0) -> LocalStep:
         return RosenbrockStep(METHODS[self.name], Linearization(action, psi, m, t, max(self.order - 1, 1)))
 
@@ -470,9 +464,6 @@ class ExponentialRosenbrock(OneExponential):
     def __post_init__(self) -> None:
         if isinstance(self.order, bool) or self.order not in (2, 3, 4):
             raise InputError(f"exponential Rosenbrock steps have order 2, 3 or 4, got {displayed(self.order)}")
-
-    def generator(self, action: Action, psi: Generator, m: Values, t: Values, h: Values) -> Values:
-        return self.at(action, psi, m, t).factors(h)[0]
 
     def at(self, action: Action, psi: Generator, m: Values, t: Values, *, error_terms: int = 0) -> LocalStep:
         if is_lazy(m):
