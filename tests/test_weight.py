@@ -56,8 +56,8 @@ WEIGHTS: tuple[tuple[int, int, int, str], ...] = (
         91373,
         49119,
         306,
-        "stiff collocation steps as long as their error allows, for fields with several time scales; blocks of lanes of "
-        "one pace, for ensembles; adaptive Corrected runs that keep the tolerance, for those who build correctors; the "
+        "stiff collocation steps as long as their error allows, for fields with several time scales; blocks of one "
+        "pace, for ensembles; adaptive Corrected runs that keep the tolerance, for those who build correctors; the "
         "linear correction of Conserving, an inverse for a few orbits and a loop of Python left",
     ),
 )
