@@ -376,7 +376,7 @@ class Propagator:
             raise InputError(f"min_step is {options.min_step}, larger than max_step, {options.max_step}")
         if options.dt is None and options.rtol == 0 and options.atol == 0:
             raise InputError("rtol and atol are both 0: no step size meets that; give one of them, or dt")
-        if options.dt is None:
+        if options.dt is None and (timed or span[0] != span[1]):  # else no step is made
             check_adaptive(step, action, start, orbit_dimension)
         return Problem(action, self.field, step, span, start, orbit_dimension, options, bound, args)
 
