@@ -164,8 +164,8 @@ def called(source: Callable[..., Any], form: CallForm, timed: bool, *args: Pytre
     return (lambda m, t: source(m, **{time: t}, **fixed)) if timed else (lambda m, t: source(m, **fixed))
 
 
-# Components: a generator or vector field as one function (m, t) -> components, from a function written with numpy over
-# leading axes, a list of expressions in m0, m1, ..., t, or a constant array; on arrays, exact numbers and Jets.
+# Components: a generator or vector field as one function (m, t) -> components, on arrays, exact numbers and Jets. It
+# is made from a function written with numpy over leading axes, a list of expressions in m0, m1, ..., t, or an array.
 
 GeneratorLike: TypeAlias = "Callable[..., Any] | Sequence[ComponentLike] | npt.NDArray[Any]"
 """What is read as a generator or vector field: a function of m (and t), a list of components, or a constant array."""

@@ -118,10 +118,10 @@ def integrate(
     different numbers of steps, t and y are filled up with NaN unless `t_eval` is given.
 
     A trajectory ends with status -1, and with the points computed so far, if psi is not finite, the step size is below
-    round-off, τ does not increase at a rate between 1/5 and 5 over the step, the equations of an implicit step have no
-    solution, or `max_steps` is reached. A trajectory that reaches its end by steps of size `dt` without the order of
-    its `Corrected` step has status -2. The others of an ensemble go on, and `statuses` and `message` say which ended
-    and when.
+    round-off, or `max_steps` is reached. It also does if τ does not increase at a rate between 1/5 and 5 over the step,
+    or if the equations of an implicit step have no solution. A trajectory that reaches its end by steps of size `dt`
+    without the order of its `Corrected` step has status -2. The others of an ensemble go on, and `statuses` and
+    `message` say which ended and when.
 
     Compiled steps call psi while they are traced, so it must be the same function all the time. Results agree with
     numpy to round-off, and `nfev` is the number of calls that the trajectory with the most of them would make. Keep a

@@ -443,7 +443,7 @@ def round_off_of(
     return noise
 
 
-# Conserving(step, F): a step that conserves first integrals by isotropy, to round-off or to one order higher.
+# Conserving(step, F) conserves first integrals by isotropy, to round-off.
 #     m -> Exp(xi(m, t) + t^(n-1) sigma) m,    sigma in g_m,    F(step) = F(start of the run)         (7.2), (7.6)
 # Here n - 1 is the order to which the base step conserves F. sigma is in V_m, the complement of ker chi_m in g_m. See
 # section 7 of the paper.

@@ -38,8 +38,8 @@ from liehom.flow.steps.step import (
 from liehom.flow.tracing.array import Traced
 
 # Corrections by terms of the flow's own generator, near zeros of a time-dependent field. Let w_l be the leading
-# coefficient at (m, t). At orders n <= l isotropy does not enter. If w_l is small compared with the later w_k, as
-# shortly after a time at which the field vanishes, zeta and c are series in h / t_1 with
+# coefficient at (m, t). At orders n <= l isotropy does not enter. Let w_l be small compared with the later w_k, as
+# shortly after a time at which the field vanishes. Then zeta and c are series in h / t_1 with
 #     t_1 = min over k > l of (l |w_l| / (k |w_k|))^(1/(k-l)),    the time in which the velocity changes by itself,
 # so they are useful only for steps h << t_1. Therefore t_1 is compared with the time scale 1/rate of the generator,
 # rate = max_k |psi_k|^(1/(k+1)). Isotropy makes the fraction s(rate t_1) of each correction, where s = 0 up to 1/4, s =

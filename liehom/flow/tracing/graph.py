@@ -17,7 +17,7 @@ import numpy.typing as npt
 from liehom.base.errors import TraceError
 from liehom.base.typing import Array, IntegerArray, Lanes
 
-# Expr, a tracer: a symbolic number or boolean on a tape, which records the operations on it; constants of a run.
+# Tracers. An Expr is a symbolic number or boolean on a tape, which records the operations on it. Constants of a run.
 
 Payload: TypeAlias = Any
 """Data of an operation: a constant's value, an index, the name of a variable, a `Loop`, positions in a matrix."""
