@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from functools import partial, reduce
+from functools import partial
 from typing import TYPE_CHECKING, Any, TypeAlias, final
 
 import numpy as np
@@ -319,11 +319,8 @@ def _checked_key(key: Key) -> Key:
 
 def elementwise(tape: Tape, function: Callable[..., Expr], *arrays: Operand, numbers: bool = False) -> Traced:
     """Traced array of function(entries), with broadcasting; with `numbers`, booleans become 0 or 1."""
-    spread = np.broadcast_arrays(*[expr_array(tape, _numbers(tape, a) if numbers else a) for a in arrays])
-    out = np.empty(spread[0].shape, dtype=object)
-    for index in np.ndindex(out.shape):
-        out[index] = function(*[a[index] for a in spread])
-    return Traced(tape, out)
+    entries = [expr_array(tape, _numbers(tape, a) if numbers else a) for a in arrays]
+    return Traced(tape, np.frompyfunc(function, len(entries), 1)(*entries))
 
 
 # -- ufuncs ------------------------------------------------------------------------------------------------
@@ -434,16 +431,8 @@ def contracted(tape: Tape, arrays: Sequence[ExprArray], labels: Sequence[str], o
 def _reduced(
     tape: Tape, combine: Callable[[Expr, Expr], Expr], a: Operand, axis: Axis, keepdims: bool, start: Expr | None
 ) -> Traced:
-    entries = expr_array(tape, a)
-    axes = range(entries.ndim) if axis is None else [k % entries.ndim for k in np.atleast_1d(axis)]
-    kept = [k for k in range(entries.ndim) if k not in axes]
-    rows = entries.transpose([*kept, *axes]).reshape(*[entries.shape[k] for k in kept], -1)
-    out, first = np.empty(rows.shape[:-1], dtype=object), [] if start is None else [start]
-    for index in np.ndindex(out.shape):
-        out[index] = reduce(combine, [*first, *rows[index]] or [None])
-    if keepdims:
-        out = out.reshape([1 if k in axes else n for k, n in enumerate(entries.shape)])
-    return Traced(tape, out)
+    function: Any = np.frompyfunc(combine, 2, 1, identity=None)
+    return Traced(tape, function.reduce(expr_array(tape, a), axis=axis, keepdims=keepdims, initial=start))
 
 
 def _numbers(tape: Tape, a: Operand) -> Traced:
@@ -462,26 +451,21 @@ def _sum(tape: Tape, a: Operand, axis: Axis = None, where: Operand = True, **opt
     return Traced(tape, np.sum(_numbers(tape, _where(tape, where, a, 0.0)).entries, axis=axis, **known))
 
 
-def _extremum(least: bool) -> Callable[..., Traced]:
-    def extremum(
-        tape: Tape, a: Operand, axis: Axis = None, out: object = None, keepdims: bool = False,
-        initial: float | None = None, where: Operand = True,
-    ) -> Traced:  # fmt: skip
-        start = None if initial is None or not np.isscalar(initial) else tape.of(initial)
-        a = _numbers(tape, a) if start is None else _where(tape, where, _numbers(tape, a), start)
-        return _reduced(tape, lambda x, y: tape.largest(x, y, least=least), a, axis, keepdims is True, start)
-
-    return extremum
+def _extremum(
+    tape: Tape, a: Operand, axis: Axis = None, out: object = None, keepdims: bool = False,
+    initial: float | None = None, where: Operand = True, *, least: bool = False,
+) -> Traced:  # fmt: skip
+    start = None if initial is None or not np.isscalar(initial) else tape.of(initial)
+    a = _numbers(tape, a) if start is None else _where(tape, where, _numbers(tape, a), start)
+    return _reduced(tape, partial(tape.largest, least=least), a, axis, keepdims is True, start)
 
 
-def _quantifier(every: bool) -> Callable[..., Traced]:
-    def quantifier(
-        tape: Tape, a: Operand, axis: Axis = None, out: object = None, keepdims: bool = False, where: Operand = True
-    ) -> Traced:
-        combine, empty = (tape.both, tape.true) if every else (tape.either, tape.false)
-        return _reduced(tape, combine, _where(tape, where, a, empty), axis, keepdims is True, empty)
-
-    return quantifier
+def _quantifier(
+    tape: Tape, a: Operand, axis: Axis = None, out: object = None, keepdims: bool = False, where: Operand = True,
+    *, every: bool = False,
+) -> Traced:  # fmt: skip
+    combine, empty = (tape.both, tape.true) if every else (tape.either, tape.false)
+    return _reduced(tape, combine, _where(tape, where, a, empty), axis, keepdims is True, empty)
 
 
 def _where(tape: Tape, condition: Operand, x: Operand = None, y: Operand = None) -> Traced:
@@ -529,21 +513,17 @@ def _inverse(tape: Tape, a: Operand) -> Traced:
     return _solve(tape, a, np.broadcast_to(np.eye(np.shape(a)[-1]), np.shape(a)))
 
 
-def _blank(fill: float) -> Callable[..., Traced]:
-    def make(
-        tape: Tape, a: Operand, dtype: DTypeLike | None = None, order: str = "K", subok: bool = True,
-        shape: int | Sequence[int] | None = None,
-    ) -> Traced:  # fmt: skip
-        return Traced(tape, np.full(np.shape(a) if shape is None else shape, fill))
-
-    return make
+def _blank(
+    tape: Tape, a: Operand, *_: object, shape: Sequence[int] | None = None, fill: float = 0.0, **__: object
+) -> Traced:
+    return Traced(tape, np.full(np.shape(a) if shape is None else shape, fill))
 
 
 SPECIAL: dict[str, Callable[..., Any]] = {
-    "max": _extremum(False), "amax": _extremum(False), "min": _extremum(True), "amin": _extremum(True),
-    "all": _quantifier(True), "any": _quantifier(False), "where": _where, "sum": _sum, "clip": _clip,
+    **dict.fromkeys(["max", "amax"], _extremum), **dict.fromkeys(["min", "amin"], partial(_extremum, least=True)),
+    "all": partial(_quantifier, every=True), "any": _quantifier, "where": _where, "sum": _sum, "clip": _clip,
     "linalg.norm": _norm, "linalg.solve": _solve, "linalg.inv": _inverse,
-    "zeros_like": _blank(0.0), "ones_like": _blank(1.0), "empty_like": _blank(0.0),
+    "zeros_like": _blank, "ones_like": partial(_blank, fill=1.0), "empty_like": _blank,
     "full_like": lambda tape, a, fill_value, **_: Traced(tape, np.full(np.shape(a), 1.0)) * fill_value,
     "shape": lambda tape, a: a.shape, "ndim": lambda tape, a: a.ndim,
     "size": lambda tape, a, axis=None: a.size if axis is None else a.shape[axis],
