@@ -167,16 +167,6 @@ class Sensitivity:
         return value.value.shape[len(self._shape) :] if isinstance(value, PerTrajectory) else tuple(np.shape(value))
 
 
-class _Derivatives(NamedTuple):
-    """Derivatives of the point, and of the time if the step has a clock, with axes (output, input, ...)."""
-
-    by_point: Array
-    by_time: Array
-    by_size: Array
-    by_constant: Array
-    by_parameter: Array
-
-
 @final
 class _Group:
     """Trajectories with orbits of one dimension: the graph of their step, their steps, and where the samples lie."""
@@ -253,19 +243,20 @@ class _Group:
             inputs |= {-1 - i: c[rows] for i, c in enumerate(self._given)}
             yield part, Sweeps(outputs, inputs, len(rows))
 
-    def _derivatives(self, points: Array, times: Array, sizes: Array, *, parameters: bool) -> _Derivatives:
-        """Derivatives of steps (k, L), each of shape (outputs, inputs, k, L) or (outputs, k, L)."""
-        n, rows, shape = self._n, len(self._outputs), sizes.shape
-        columns = [*range(n + 2), *self._constants, *(self._parameters if parameters else [])]
-        slopes = np.zeros((rows, len(columns), sizes.size))
+    def _derivatives(self, points: Array, times: Array, sizes: Array, *, parameters: bool) -> tuple[Array, Array]:
+        """Derivatives of the outputs of steps (k, L) by the state before them and by the parameters, if wanted,
+        (k, L, outputs, columns), and by their sizes, (k, L, outputs).
+        """
+        n, rows = self._n, len(self._outputs)
+        columns = [n + 1, *range(n + 1), *self._constants, *(self._parameters if parameters else [])]
+        slopes = np.zeros((sizes.size, rows, len(columns)))
         for part, sweeps in self._swept(self._outputs, points, times, sizes, at_once=False):
             for i in range(rows):
                 by_input = sweeps.pulled([1.0 if j == i else 0.0 for j in range(rows)])
                 for place, column in enumerate(columns):
-                    slopes[i, place, part] = by_input.get(column, 0.0)
-        slopes = slopes.reshape(rows, len(columns), *shape)
-        last = n + 2 + len(self._constants)
-        return _Derivatives(slopes[:, :n], slopes[:, n], slopes[:, n + 1], slopes[:, n + 2 : last], slopes[:, last:])
+                    slopes[part, i, place] = by_input.get(column, 0.0)
+        slopes = slopes.reshape(*sizes.shape, rows, len(columns))
+        return slopes[..., 1:], slopes[..., 0]
 
     def _steps(self) -> tuple[Array, Array, Array]:
         """Points, times and sizes of the steps; those of size 0 at the start for trajectories that do not move."""
@@ -273,116 +264,97 @@ class _Group:
         times = np.where(self._moved, self._times[:-1], self._times[0])
         return points, times, np.where(self._moved, self._sizes, 0.0)
 
-    def _of_samples(self, *, parameters: bool) -> tuple[IntegerArray, Array, Array, Array, _Derivatives] | None:
-        if self._samples is None:
-            return None
-        index, sizes = self._samples
+    def _steps_to_samples(self) -> tuple[Array, Array, Array]:
+        """Points, times and sizes of the steps to the times of t_eval."""
+        index, sizes = self._samples  # type: ignore[misc]
         points = np.take_along_axis(self._points, index[..., None], axis=0)
-        times = np.take_along_axis(self._times, index, axis=0)
-        return index, points, times, sizes, self._derivatives(points, times, sizes, parameters=parameters)
+        return points, np.take_along_axis(self._times, index, axis=0), sizes
 
     def _constant_slopes(self) -> Array:
-        """Derivatives of the constants of the trajectories by their initial points, shape (constants, N, L)."""
+        """Derivatives of the constants of the trajectories by their initial points, shape (L, constants, N)."""
         n, functions = self._n, [self.graph.constant_functions[-1 - c] for c in self._constants]
-        slopes = np.zeros((len(functions), n, len(self.lanes)))
+        slopes = np.zeros((len(self.lanes), len(functions), n))
         for i, function in enumerate(functions):
             tape = Tape()
             output = Traced(tape, function(Traced.inputs(tape, 0, n))).entry
             if not output.constant:
                 by_input = Sweeps([output], dict(enumerate(self._start.T)), len(self.lanes)).pulled([1.0])
                 for j in range(n):
-                    slopes[i, j] = by_input.get(j, 0.0)
+                    slopes[:, i, j] = by_input.get(j, 0.0)
         return slopes
+
+    # The state of a trajectory: its point, its time, and its constants, which steps do not change.
 
     # -- forward -------------------------------------------------------------------------------------------
     def tangents(self) -> Array:
         """Derivatives of the points at all times by y0 and the numbers in args, shape (k, L, N, N + P)."""
         n, lanes = self._n, len(self.lanes)
-        columns = n + len(self._parameters)
-        z, t = np.broadcast_to(np.eye(n, columns), (lanes, n, columns)), np.zeros((lanes, columns))
-        constants = np.zeros((lanes, len(self._constants), columns))
-        constants[:, :, :n] = np.moveaxis(self._constant_slopes(), -1, 0)
-        steps = self._derivatives(*self._steps(), parameters=True)
-        states, clocks = [z], [t]
-        for k in range(len(self._sizes)):
-            moves, lands = self._moved[k], self._times[k + 1] == self._end
-            new_z, new_t = self._pushed(_at(steps, k), z, t, constants, lands)
-            z, t = np.where(moves[:, None, None], new_z, z), np.where(moves[:, None], new_t, t)
+        z = np.zeros((lanes, n + 1 + len(self._constants), n + len(self._parameters)))
+        z[:, :n, :n], z[:, n + 1 :, :n] = np.eye(n), self._constant_slopes()
+        slopes, by_size = self._derivatives(*self._steps(), parameters=True)
+        states = [z]
+        for k, moves in enumerate(self._moved):
+            new = self._pushed(slopes[k], by_size[k], z, self._times[k + 1] == self._end)
+            z = np.where(moves[:, None, None], new, z)
             states.append(z)
-            clocks.append(t)
-        sampled = self._of_samples(parameters=True)
-        if sampled is None:
-            return np.stack(states)
-        index, *_, derivatives = sampled
-        rows, everywhere = np.arange(lanes), np.ones(lanes, dtype=bool)
-        before = zip(np.stack(states)[index, rows], np.stack(clocks)[index, rows], strict=True)
-        return np.stack(
-            [self._pushed(_at(derivatives, q), *zt, constants, everywhere)[0] for q, zt in enumerate(before)]
-        )
+        if self._samples is None:
+            return np.stack(states)[:, :, :n]
+        slopes, by_size = self._derivatives(*self._steps_to_samples(), parameters=True)
+        before, everywhere = np.stack(states)[self._samples[0], np.arange(lanes)], np.ones(lanes, dtype=bool)
+        return np.stack([self._pushed(*row, everywhere)[:, :n] for row in zip(slopes, by_size, before, strict=True)])
 
-    def _pushed(
-        self, d: _Derivatives, z: Array, t: Array, constants: Array, lands: BooleanArray
-    ) -> tuple[Array, Array]:
-        """Derivatives of point and time after a step, from those before it."""
-        n = self._n
-        pushed = np.einsum("ijl,ljc->lic", d.by_point, z) + np.einsum("il,lc->lic", d.by_time, t)
-        pushed += np.einsum("ijl,ljc->lic", d.by_constant, constants)
-        pushed[:, :, n:] += np.moveaxis(d.by_parameter, -1, 0)
-        if self.graph.elapsed is None:
-            return pushed, t
-        after = t + pushed[:, n]
-        change = np.where(lands[:, None], -after / d.by_size[n][:, None], 0.0)
-        point = pushed[:, :n] + np.einsum("il,lc->lic", d.by_size[:n], change)
-        return point, np.where(lands[:, None], 0.0, after)
+    def _pushed(self, slopes: Array, by_size: Array, z: Array, lands: BooleanArray) -> Array:
+        """Derivatives of the state after a step, from those before it; `lands` if it ends at a given time."""
+        n, count = self._n, z.shape[1]
+        moved = slopes[..., :count] @ z
+        moved[..., n:] += slopes[..., count:]
+        after = z.copy()
+        after[:, :n] = moved[:, :n]
+        if self.graph.elapsed is not None:
+            time = z[:, n] + moved[:, n]
+            after[:, n] = np.where(lands[:, None], 0.0, time)
+            after[:, :n] -= by_size[:, :n, None] * ((time - after[:, n]) / by_size[:, n, None])[:, None]
+        return after
 
     # -- backward ------------------------------------------------------------------------------------------
     def adjoint(self, weights: Array) -> tuple[Array, Array]:
         """Derivatives of sum(weights (k, L, N) * all points) by y0, (L, N), and by the numbers in args, (P, L)."""
         n, lanes, count = self._n, len(self.lanes), len(self._sizes)
-        by_state = np.zeros((count + 1, lanes, n))
-        by_clock = np.zeros((count + 1, lanes))
-        by_constant = np.zeros((lanes, len(self._constants)))
+        states = np.zeros((count + 1, lanes, n + 1 + len(self._constants)))
         by_parameter = np.zeros((len(self._parameters), lanes))
         weights = np.nan_to_num(weights)
-        sampled = self._of_samples(parameters=False)
-        if sampled is None:
-            by_state += weights[: count + 1]
+        if self._samples is None:
+            states[..., :n] += weights[: count + 1]
         else:
-            index, points, times, sizes, derivatives = sampled
-            seeds = np.zeros((len(index), lanes, len(self._outputs)))
-            for q in range(len(index)):
-                seeds[q], state, clock, constant = self._pulled(_at(derivatives, q), weights[q], None)
-                np.add.at(by_state, (index[q], np.arange(lanes)), state)
-                np.add.at(by_clock, (index[q], np.arange(lanes)), clock)
-                by_constant += constant
-            self._add_parameters(by_parameter, points, times, sizes, seeds)
-        steps = self._derivatives(*self._steps(), parameters=False)
-        seeds = np.zeros((count, lanes, len(self._outputs)))
+            index, everywhere = self._samples[0], np.ones(lanes, dtype=bool)
+            slopes, by_size = self._derivatives(*self._steps_to_samples(), parameters=False)
+            seeds = np.zeros(by_size.shape)
+            after = np.zeros((len(index), *states.shape[1:]))
+            after[..., :n] = weights
+            for q, places in enumerate(index):
+                seeds[q], before = self._pulled(slopes[q], by_size[q], after[q], everywhere)
+                np.add.at(states, (places, np.arange(lanes)), before)
+            self._add_parameters(by_parameter, *self._steps_to_samples(), seeds)
+        slopes, by_size = self._derivatives(*self._steps(), parameters=False)
+        seeds = np.zeros(by_size.shape)
         for k in range(count - 1, -1, -1):
-            moves, lands = self._moved[k], self._times[k + 1] == self._end
-            clock_weight = np.where(lands, np.nan, by_clock[k + 1])
-            seed, state, clock, constant = self._pulled(_at(steps, k), by_state[k + 1], clock_weight)
-            seeds[k] = np.where(moves[:, None], seed, 0.0)
-            by_state[k] += np.where(moves[:, None], state, by_state[k + 1])
-            by_clock[k] += np.where(moves, clock, by_clock[k + 1])
-            by_constant += np.where(moves[:, None], constant, 0.0)
+            moves = self._moved[k][:, None]
+            seed, before = self._pulled(slopes[k], by_size[k], states[k + 1], self._times[k + 1] == self._end)
+            seeds[k] = np.where(moves, seed, 0.0)
+            states[k] += np.where(moves, before, states[k + 1])
         self._add_parameters(by_parameter, *self._steps(), seeds)
-        return by_state[0] + np.einsum("lc,cjl->lj", by_constant, self._constant_slopes()), by_parameter
+        by_constant = np.einsum("lc,lcj->lj", states[0, :, n + 1 :], self._constant_slopes())
+        return states[0, :, :n] + by_constant, by_parameter
 
-    def _pulled(
-        self, d: _Derivatives, weights: Array, clock_weights: Array | None
-    ) -> tuple[Array, Array, Array, Array]:
-        """Weights of the outputs of a step, and of the point, the time and the constants before it, from those of the
-        point (L, N) and the time after it; NaN, or None for all, means that the step ends at a given time.
-        """
-        n, seeds, before = self._n, weights, np.zeros(len(weights))
+    def _pulled(self, slopes: Array, by_size: Array, after: Array, lands: BooleanArray) -> tuple[Array, Array]:
+        """Weights of the outputs of a step, and of the state before it, from those of the state after it, (L, ...)."""
+        n, before = self._n, after.copy()
         if self.graph.elapsed is not None:
-            ends = -np.einsum("li,il->l", weights, d.by_size[:n]) / d.by_size[n]
-            before = ends if clock_weights is None else np.where(np.isnan(clock_weights), ends, clock_weights)
-            seeds = np.concatenate([weights, before[:, None]], axis=1)
-        state = np.einsum("li,ijl->lj", seeds, d.by_point)
-        clock = np.einsum("li,il->l", seeds, d.by_time) + before
-        return seeds, state, clock, np.einsum("li,ijl->lj", seeds, d.by_constant)
+            at_end = -(after[:, :n] * by_size[:, :n]).sum(axis=1) / by_size[:, n]
+            before[:, n] = np.where(lands, at_end, after[:, n])
+        seeds = before[:, : len(self._outputs)].copy()
+        before[:, :n] = 0.0
+        return seeds, before + np.einsum("lo,los->ls", seeds, slopes)
 
     def _add_parameters(self, total: Array, points: Array, times: Array, sizes: Array, seeds: Array) -> None:
         """Add the derivatives by the numbers in args, from the weights (k, L, outputs) of the outputs of steps."""
@@ -395,8 +367,3 @@ class _Group:
             for i, column in enumerate(self._parameters):
                 if column in by_input:
                     np.add.at(total[i], lanes[part], by_input[column])
-
-
-def _at(d: _Derivatives, k: int) -> _Derivatives:
-    """The derivatives of step k, with the trajectories on the last axis."""
-    return _Derivatives(*[x[..., k, :] for x in d])
