@@ -7,7 +7,6 @@ shifted sites. The step is cut into stages at the calls of psi, because psi need
 from __future__ import annotations
 
 import time as wall
-from dataclasses import replace
 from typing import Any, Protocol, final, runtime_checkable
 
 import numpy as np
@@ -16,11 +15,10 @@ from liehom.base.errors import InputError, LiehomError, TraceError
 from liehom.base.typing import Array, Values
 from liehom.flow.action.field import GeneratorField
 from liehom.flow.action.space import Action
-from liehom.flow.engines.engine import Problem, executed
+from liehom.flow.engines.engine import Problem
 from liehom.flow.engines.lanes import cores
 from liehom.flow.run.control import SLACK
 from liehom.flow.run.run import Run
-from liehom.flow.run.solution import Solution
 from liehom.flow.series.jet import Jet
 from liehom.flow.steps.step import Generator, LocalStep, Step
 from liehom.flow.tracing.array import Traced
@@ -49,13 +47,13 @@ class NoisyStep(Protocol):
 class LatticeStep(Step):
     """An explicit step of a lattice field in machine code."""
 
-    def __init__(
-        self, step: Step, field: GeneratorField, action: Action, orbit_dimension: int, *, workers: int = 1
-    ) -> None:
-        self.step, self.workers = step, workers
+    def __init__(self, problem: Problem) -> None:
+        if (kind := problem.start.dtype) != np.float64:
+            raise InputError(f"engine='llvm' computes in float64, the start is of type {kind}: take engine='numpy'")
+        self.step = step = problem.step
         self._noisy: NoisyStep | None = step if isinstance(step, NoisyStep) else None
         try:
-            recorded = _Recorded(step, field, action, orbit_dimension)
+            recorded = _Recorded(step, problem.bound, problem.action, int(np.max(problem.orbit_dimension)))
         except TraceError as error:
             raise TraceError(f"{step!r} cannot be compiled on a lattice: {error}") from error
         except (LiehomError, TypeError, AttributeError, ValueError, IndexError) as error:
@@ -65,7 +63,7 @@ class LatticeStep(Step):
                 "take engine='numpy'"
             ) from error
         self.kernel = LatticeKernel(
-            recorded.inputs, recorded.stages, recorded.time, recorded.size, field.representation.size
+            recorded.inputs, recorded.stages, recorded.time, recorded.size, problem.field.representation.size
         )
         self.calls: int = recorded.calls
         self.estimate_order: int | None = recorded.estimate_order
@@ -108,7 +106,7 @@ class LatticeStep(Step):
         """The points of one lattice of an ensemble after steps of a size, step k from origin + k size."""
         self.kernel.put(m)
         if self._noisy is None:
-            self.kernel.run(steps.start, steps.stop, origin, size, self.workers)
+            self.kernel.run(steps.start, steps.stop, origin, size, cores())
             return self.kernel.get()
         for k in steps:
             self.kernel.put(self._noisy.noise(origin + k * size)[index], "w")
@@ -255,17 +253,3 @@ class LatticePath:
             moved = np.ones(run.shape, dtype=bool)
             now.path.add(now.t, now.m, np.full(run.shape, size), moved)
         return True
-
-
-def lattice_step(problem: Problem) -> LatticeStep:
-    """The step of a problem whose trajectories are the sites of lattices, in machine code."""
-    if (kind := problem.start.dtype) != np.float64:
-        raise InputError(f"engine='llvm' computes in float64, the start is of type {kind}: take engine='numpy'")
-    return LatticeStep(
-        problem.step, problem.bound, problem.action, int(np.max(problem.orbit_dimension)), workers=cores()
-    )
-
-
-def solved_on_lattice(problem: Problem, step: LatticeStep) -> Solution:
-    """The solution of a problem whose trajectories are the sites of lattices."""
-    return executed(replace(problem, step=step), lambda run: LatticePath(step))

@@ -8,6 +8,7 @@ before that step, which the automaton then makes or diagnoses.
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Iterable, Mapping
+from dataclasses import replace
 from typing import Any, final
 
 import numpy as np
@@ -35,7 +36,7 @@ from liehom.flow.engines.lanes import (
     times_until,
     with_guard,
 )
-from liehom.flow.engines.lattice import LatticeStep, lattice_step, solved_on_lattice
+from liehom.flow.engines.lattice import LatticePath, LatticeStep
 from liehom.flow.engines.plan import (
     CHUNK,
     FLOAT,
@@ -91,8 +92,8 @@ class LlvmEngine:
         if problem.field.sites:
             step, self._lattice = self._lattice, None  # its planes serve one call at a time
             if step is None or problem.args is not None:
-                step = lattice_step(problem)
-            solution = solved_on_lattice(problem, step)
+                step = LatticeStep(problem)
+            solution = executed(replace(problem, step=step), lambda _: LatticePath(step))
             self._lattice = step
             return solution
         runs: list[CompiledRun] = []

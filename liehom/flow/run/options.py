@@ -165,7 +165,12 @@ def points_of(y0: npt.ArrayLike) -> Array:
     try:
         array = np.asarray(y0)
         if array.dtype.kind == "O":
-            array = _from_objects(array)
+            for name in {type(x).__name__ for x in array.flat}.intersection(ROUNDED):
+                raise InputError(
+                    f"the start has a number of type {name}, which would be rounded: "
+                    "numpy.array(y0, dtype=float) computes in double precision, numpy.longdouble in extended precision"
+                )
+            array = array.astype(np.float64)
     except (TypeError, ValueError, OverflowError, RecursionError) as error:
         raise InputError(f"the start is not a point of floats: {error}") from None
     if array.dtype in (np.float64, np.longdouble) or array.dtype.kind in "iu":
@@ -173,17 +178,6 @@ def points_of(y0: npt.ArrayLike) -> Array:
     remedy = REMEDIES.get(array.dtype.kind)
     expected = "float64" if array.dtype.kind == "f" else "real numbers"
     raise InputError(f"the start has the type {array.dtype}, expected {expected}" + (f": {remedy}" if remedy else ""))
-
-
-def _from_objects(array: npt.NDArray[Any]) -> npt.NDArray[Any]:
-    """An array of floats from numbers of Python and of other libraries."""
-    for x in array.flat:
-        if type(x).__name__ in ROUNDED:
-            raise InputError(
-                f"the start has a number of type {type(x).__name__}, which would be rounded: "
-                "numpy.array(y0, dtype=float) computes in double precision, numpy.longdouble in extended precision"
-            )
-    return array.astype(np.float64)
 
 
 def span_of(t_span: Iterable[float] | Span, dtype: np.dtype[Any]) -> Span:

@@ -52,7 +52,7 @@ from liehom.flow.run.options import (
     outcome,
 )
 from liehom.flow.run.records import EventLog, Path, Samples, StepStatistics
-from liehom.flow.run.solution import DenseSolution, Solution, with_steps
+from liehom.flow.run.solution import DenseSolution, Solution
 from liehom.flow.series.arrays import in_lanes
 from liehom.flow.series.jet import Jet
 from liehom.flow.steps.expansion import flow_series
@@ -493,7 +493,7 @@ class Run:
             progress.update(lambda: 1.0, last=True)
             solution = self._solution()
         if path is not None and solution.status != -1:
-            files.remove(path)
+            path.unlink(missing_ok=True)
         return solution
 
     def _fingerprint(self) -> str:
@@ -539,4 +539,6 @@ class Run:
             status=ended.status, message=ended.message, n_steps=now.taken if self.shape else int(now.taken),
             report=report, statuses=ended.statuses if self.shape else ended.status,
         )  # fmt: skip
-        return with_steps(solution, dense) if self.keeps else solution
+        if self.keeps:
+            object.__setattr__(solution, "_steps", dense)  # for `interpolant`
+        return solution

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import dataclasses
 import json
 import os
@@ -190,12 +189,6 @@ def load(path: str | os.PathLike[str], fingerprint: str) -> dict[str, npt.NDArra
             "another path"
         )
     return state
-
-
-def remove(path: str | os.PathLike[str]) -> None:
-    """Delete a checkpoint, if there is one."""
-    with contextlib.suppress(FileNotFoundError):
-        os.remove(path)
 
 
 def _not_writable(target: Path, error: Exception) -> InputError:
@@ -396,12 +389,6 @@ def solution_of(t: Array, y: Array, status: int, others: tuple[Any, ...]) -> Sol
     return draft
 
 
-def with_steps(solution: Solution, steps: Callable[[], DenseSolution]) -> Solution:
-    """The solution, which remembers its steps so that `interpolant` can make them again."""
-    object.__setattr__(solution, "_steps", steps)
-    return solution
-
-
 def interpolant(solution: Solution) -> DenseSolution | None:
     """The solution as a function of time, `sol` or the steps made again; None if it does not know its steps, as when it
     was read or merged, is known at `t_eval` only, or comes from compiled calls without a path.
@@ -440,7 +427,9 @@ SUMMARY = ("message", "success", "status", "statuses", *_TRAJECTORY, "n_steps", 
 def _summary_entry(value: object, indent: int) -> str:
     """String of an entry in a few lines; lines after the first are indented."""
     if isinstance(value, list):
-        text = f"{len(value)} event{'' if len(value) == 1 else 's'}: " + "; ".join(_occurrences(x) for x in value)
+        counts = [sum(map(len, _of_trajectories(events))) for events in value]
+        times = "; ".join(f"{count} time{'' if count == 1 else 's'}" for count in counts)
+        text = f"{len(value)} event{'' if len(value) == 1 else 's'}: {times}"
         text = textwrap.shorten(text, 100, placeholder=" ...")
     elif isinstance(value, np.ndarray) and value.ndim:
         shape = f" of shape {value.shape}" if value.ndim > 1 or value.size > 6 else ""
@@ -448,12 +437,6 @@ def _summary_entry(value: object, indent: int) -> str:
     else:
         text = str(value)
     return text.replace("\n", "\n" + " " * indent)
-
-
-def _occurrences(events: npt.NDArray[Any]) -> str:
-    """String of the number of occurrences of an event."""
-    count = sum(map(len, _of_trajectories(events)))
-    return f"{count} time{'' if count == 1 else 's'}"
 
 
 # -- a solution as arrays and facts ----------------------------------------------------------------------
@@ -511,6 +494,9 @@ def _from_arrays(arrays: Mapping[str, npt.NDArray[Any]], facts: Mapping[str, Any
         ends = [np.cumsum(arrays[f"events_{i}_counts"])[:-1] for i in range(facts["events"])]
         return [of_lanes(np.split(arrays[f"events_{i}_{name}"], x), shape) for i, x in enumerate(ends)]
 
+    report = _as_tuples(facts["report"])
+    if report["conservation"] is not None:
+        report["conservation"] = ConservationReport(**report["conservation"])
     return Solution(
         t=arrays["t"],
         y=arrays["y"],
@@ -521,19 +507,13 @@ def _from_arrays(arrays: Mapping[str, npt.NDArray[Any]], facts: Mapping[str, Any
         status=facts["status"],
         message=facts["message"],
         n_steps=arrays["n_steps"] if shape else int(arrays["n_steps"]),
-        report=_report(facts["report"]),
+        report=Report(**report),
         statuses=arrays["statuses"] if shape else int(arrays["statuses"]),
     )
 
 
-def _report(facts: Mapping[str, Any]) -> Report:
-    conservation = facts["conservation"]
-    if conservation is not None:
-        conservation = ConservationReport(**{**conservation, "short_at": _as_tuples(conservation["short_at"])})
-    singular_at, others = _as_tuples(facts["singular_at"]), _as_tuples(facts.get("diagnostics", ()))
-    return Report(**{**facts, "singular_at": singular_at, "conservation": conservation, "diagnostics": others})
-
-
 def _as_tuples(value: Any) -> Any:
     """The value with tuples in place of the lists of JSON."""
+    if isinstance(value, Mapping):
+        return {name: _as_tuples(x) for name, x in value.items()}
     return tuple(map(_as_tuples, value)) if isinstance(value, list | tuple) else value

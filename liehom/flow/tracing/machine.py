@@ -52,15 +52,6 @@ def _host() -> tuple[ModuleType, str, dict[str, bool]]:
     return llvm, f"{llvmlite.__version__}{llvm.llvm_version_info}{name}{features.flatten()}{triple}", dict(features)
 
 
-def cache_directory() -> Path | None:
-    """Folder of the cached machine code, LIEHOM_CACHE_DIR or ~/.cache/liehom; None if that variable is empty."""
-    folder = os.environ.get("LIEHOM_CACHE_DIR")
-    if folder is not None:
-        return Path(folder) if folder else None
-    home = os.environ.get("XDG_CACHE_HOME") or os.path.join(os.path.expanduser("~"), ".cache")
-    return Path(home) / "liehom"
-
-
 def engine_of(text: str) -> tuple[Engine, bool]:
     """(engine with the code of a module, whether the code was cached)."""
     llvm, stamp, _ = _host()
@@ -102,10 +93,12 @@ def _add_symbols(llvm: ModuleType) -> None:
 
 
 def _private_cache() -> Path | None:
-    """The folder of cached code, made if it does not exist; None if others may write to it, whose code is not run."""
-    folder = cache_directory()
+    """LIEHOM_CACHE_DIR or ~/.cache/liehom; None if it is empty, or if others may write to it, whose code is not run."""
+    home = os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")
+    name = os.environ.get("LIEHOM_CACHE_DIR", os.path.join(home, "liehom"))
+    folder = Path(name)
     try:
-        if folder is None:
+        if not name:
             return None
         folder.mkdir(parents=True, exist_ok=True, mode=0o700)
         found = folder.stat()

@@ -90,12 +90,11 @@ def test_any_field_of_rolls_is_compiled() -> None:
 
 def test_threads_and_calls_of_any_length_give_the_same_numbers(monkeypatch: pytest.MonkeyPatch) -> None:
     lattice, m = model((12, 9)), unit(4, 12, 9)
-    action = lh.Action(lattice.field.representation)
     ends = []
     monkeypatch.setattr(lattice_kernel, "SITES_FOR_THREADS", 1)
     for step in (lh.Euler(), lh.RKMK("rk4")):  # one exchanges planes, the other writes in place
         for workers, cuts in ((1, (0, 7)), (3, (0, 7)), (1, (0, 1, 2, 7))):
-            kernel = LatticeStep(step, lattice.field, action, 2).kernel
+            kernel = LatticeStep(lh.Propagator(lattice.field, step).problem((0, 1), m, dt=0.05)).kernel
             kernel.put(m)
             for a, b in pairwise(cuts):
                 kernel.run(a, b, 0.0, 0.05, workers)
