@@ -77,13 +77,6 @@ class SingleRunOptions(RunOptions, FileOptions, total=False):
     """All keyword arguments of `integrate` but `step` and `dt`."""
 
 
-def checked_clock(clock: str) -> bool:
-    """Whether a clock is the nominal one; `InputError` for an unknown name."""
-    if clock not in CLOCKS:
-        raise InputError(f"clock is {displayed(clock)}, expected one of {', '.join(map(repr, CLOCKS))}")
-    return clock == "nominal"
-
-
 def with_tight_frame(action: Action, step: Step, start: Array, orbit_dimension: int | IntegerArray) -> Action:
     """The action with what a corrected step can use of the orbits, if all orbits are of one dimension."""
     dimensions = np.unique(orbit_dimension)

@@ -64,7 +64,7 @@ class EventSearch:
     """Looks for the events of a run in steps that a kernel has made."""
 
     def __init__(self, run: Run) -> None:
-        self.run, self.events = run, run.stops.events or Events([])
+        self.run, self.events = run, run.events or Events([])
         self.start = run.start.reshape(-1, run.start.shape[-1])
         self.dimensions = np.broadcast_to(np.asarray(run.psi.orbit_dimension), run.shape).reshape(-1)
         lanes, size = self.start.shape

@@ -106,10 +106,7 @@ def _is_short(graph: StepGraph) -> bool:
 
 
 def solution_of(problem: Problem, dimension: int, times: JaxArray, results: Leaves) -> Solution:
-    """The solution, with JAX arrays for t, y and, for an ensemble or if JAX traces the call, `statuses`.
-
-    `results` are points (k, ..., N) and arrays (...) of a `State`: code, count, t, failed, near, lost.
-    """
+    """The solution, with JAX arrays, from points (k, ..., N) and arrays (...) of a `State` at the times."""
     report = _report(problem, dimension)
     code, count, t, failed, near, lost = map(jax.lax.stop_gradient, results[1:])
     unkept_order = ORDER_NOT_KEPT if problem.options.dt is not None else 0

@@ -487,10 +487,7 @@ def with_given_sizes(
     at: At, m: JaxArray, t0: JaxArray, times: JaxArray, size: Callable[[JaxArray], JaxArray], iterations: int,
     *, end: JaxArray, direction: JaxArray, by_counting: bool,
 ) -> tuple[JaxArray, State]:  # fmt: skip
-    """Points (k, ..., N) at the times, and the last state, in a loop of fixed length that JAX can differentiate.
-
-    Of each step only the point before it is stored for the derivative (`jax.checkpoint`); the rest is computed again.
-    """
+    """Points (k, ..., N) at the times, and the last state, in a loop of fixed length that JAX can differentiate."""
 
     def one(state: State, time: JaxArray) -> State:
         local = at(state.m, state.t)
@@ -512,7 +509,7 @@ def with_given_sizes(
         # where all trajectories have landed, nothing is computed
         return lax.cond(jnp.any(state.moving), one, lambda state, time: state, state, time)
 
-    checkpointed = jax.checkpoint(body, prevent_cse=False)
+    checkpointed = jax.checkpoint(body, prevent_cse=False)  # derivatives compute steps again from the points before
 
     def towards(state: State, time: JaxArray) -> tuple[State, JaxArray]:
         state, _ = lax.scan(lambda s, _: (checkpointed(s, time), None), state, None, length=iterations)

@@ -58,9 +58,7 @@ GUARD_PROJECTIONS = 3  # number of random projections, one of which shows the ra
 
 
 def with_guard(graph: StepGraph, action: Action, dimension: int) -> StepGraph:
-    """The graph with a `guard`: whether a point is finite and its orbit certainly of dimension d. The number "checks"
-    of the run switches it on.
-    """
+    """The graph with a `guard`, which "checks" switches on: a point is finite, its orbit certainly of dimension d."""
     tape: Any = graph.point[0].tape
     m: Any = Traced.inputs(tape, 0, graph.size)
     size: Any = (m * m).sum()
@@ -366,4 +364,4 @@ def steps_per_call(run: Run, work: int, copies: int = 1) -> int:
 
 def stores_path(run: Run) -> bool:
     """Whether kernels store every step: for the path, or to look for events."""
-    return run.keeps or run.stops.events is not None
+    return run.keeps or run.events is not None

@@ -110,7 +110,7 @@ class LatticeStep(Step):
             return self.kernel.get()
         for k in steps:
             self.kernel.put(self._noisy.noise(origin + k * size)[index], "w")
-            self.kernel.run(k, k + 1, origin, size, self.workers)
+            self.kernel.run(k, k + 1, origin, size, cores())
         return self.kernel.get()
 
     def __repr__(self) -> str:
@@ -221,8 +221,8 @@ class LatticePath:
 
     def __call__(self, run: Run) -> bool:
         """Make steps until the next one is not ordinary or a call is full; whether any was made."""
-        now, dt, total = run.state, run.options.dt, run.stops.total
-        if self.stopped or dt is None or total is None or run.stops.events is not None or not now.active.all():
+        now, dt, total = run.state, run.options.dt, run.total
+        if self.stopped or dt is None or total is None or run.events is not None or not now.active.all():
             return False
         taken, size = int(np.max(now.taken)), float(run.direction) * float(np.max(dt))
         limit = min(int(np.max(total)) - 1, run.options.max_steps - 1)

@@ -223,7 +223,7 @@ class CompiledRun:
             name, kind = store.code.engine, run.dtype
             raise InputError(f"engine={name!r} computes in float64, the start is of type {kind}: take engine='numpy'")
         self.store, self.most = store, most  # steps of a call
-        self.search = None if run.stops.events is None else EventSearch(run)
+        self.search = None if run.events is None else EventSearch(run)
         self.start = run.start.reshape(-1, run.start.shape[-1])
         dimensions = np.broadcast_to(np.asarray(run.psi.orbit_dimension), run.shape).reshape(-1)
         self.groups: list[tuple[IntegerArray, Hashable, StepGraph]] = []
@@ -231,7 +231,7 @@ class CompiledRun:
             lanes = np.flatnonzero(dimensions == d)
             self.groups.append((lanes, *store.graph(run, int(d), self.start[lanes])))
         self.work = store.code.cost * max((store.works[key] for _, key, _ in self.groups), default=1)
-        self.total = int(np.max(np.asarray(0 if run.stops.total is None else run.stops.total), initial=0))
+        self.total = int(np.max(np.asarray(0 if run.total is None else run.total), initial=0))
         latest = bounds_of((float(run.span[0]), float(run.span[1])))[1]
         self.values: dict[str, Any] = {**arg_values(run.field.args, len(run.shape)), **run.limits._asdict()}
         self.values |= {"latest": latest, "rest": float(run.rest)}
@@ -273,7 +273,7 @@ class CompiledRun:
         kernel, graph = self.store.kernel(*code, len(lanes)), code[1]
         n, count, samples = self.start.shape[-1], len(lanes), run.state.samples
         times = np.zeros(0) if samples is None else samples.times
-        stops = stops_of(times, float(run.stops.end))
+        stops = stops_of(times, float(run.span[1]))
         done = np.zeros(count) if samples is None else samples.done.reshape(-1)[lanes]
         taken = back.taken[lanes]
         rows: dict[str, Any] = {"x": back.m[lanes].T, "alive": 1.0, "count": taken, **lowest_numbers(graph)}
@@ -298,7 +298,7 @@ class CompiledRun:
         row = {name: state[i, :count] for i, name in enumerate(kernel.names)}
         alive, now = row["alive"], row["count"].astype(int)
         if graph.reached is None:
-            reached = np.where(now >= self.total, float(run.stops.end), float(run.span[0]) + now * fields["step_size"])
+            reached = np.where(now >= self.total, float(run.span[1]), float(run.span[0]) + now * fields["step_size"])
             going, ended = (alive > 0) & (last < self.total), (alive > 0) & (last == self.total)
             until, tries = times_until(run, reached), now - taken
         else:

@@ -293,9 +293,7 @@ class Plan:
     def _solution(
         self, task: Task, args: Pytree, most: float, state: Array | bytes, path: Array, y: Array
     ) -> Solution | None:
-        """The solution from the largest number of steps, states (k, L) or their bytes, the path (N + 2, ..., j + 1),
-        and points at output times; None if an ordinary call should say more of it.
-        """
+        """The solution from states (k, L) or their bytes, and a path (N + 2, ..., j + 1); None for a closer look."""
         n, log, start, stops = self.n, None, None, task[2]
         if not self.is_judged and most >= MIN_STEPS:
             self.is_judged = True  # an ordinary call says whether the field is stiff
@@ -453,11 +451,7 @@ class Plan:
         return known
 
     def _by_pace(self, memory: Memory, count: int, begin: float, most: float) -> Array | None:
-        """Run the kernel until all lanes are at the end, those with as many steps left in one block; the states.
-
-        A block takes as long as its slowest lane. How many steps a lane has left follows from the time that it has
-        come to. Lanes are sorted as long as the steps that this saves are worth it.
-        """
+        """The states at the end, of lanes that are sorted by the steps that they have left, as long as that pays."""
         state, start, integers, width = memory.state, memory.start, memory.integers, self.kernel.width
         limit, made, steps, lanes = max(1, OPERATIONS_PER_CALL // (self.work * count)), 0, FIRST_STEPS, np.arange(count)
         last = int(integers[LAST_STOP])

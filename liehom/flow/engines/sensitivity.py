@@ -244,9 +244,7 @@ class _Group:
             yield part, Sweeps(outputs, inputs, len(rows))
 
     def _derivatives(self, points: Array, times: Array, sizes: Array, *, parameters: bool) -> tuple[Array, Array]:
-        """Derivatives of the outputs of steps (k, L) by the state before them and by the parameters, if wanted,
-        (k, L, outputs, columns), and by their sizes, (k, L, outputs).
-        """
+        """Derivatives of the outputs of steps (k, L), (k, L, outputs, ...), by state and parameters, and by size."""
         n, rows = self._n, len(self._outputs)
         columns = [n + 1, *range(n + 1), *self._constants, *(self._parameters if parameters else [])]
         slopes = np.zeros((sizes.size, rows, len(columns)))

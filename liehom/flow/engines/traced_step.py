@@ -141,9 +141,7 @@ def traced_step(
     stops: bool = False, args: Pytree = None, lead: int = 1, branching: bool = True,
     unrolled: int | None = None,
 ) -> StepGraph:  # fmt: skip
-    """The graph of a step on orbits of one dimension; of more than `unrolled` operations, with loops over entries.
-    See `Tape` for `branching`.
-    """
+    """The graph of a step on orbits of one dimension; of more than `unrolled` operations, with loops over entries."""
 
     def traced(tape: Tape) -> StepGraph:
         own = field if args is None else field.with_args(traced_args(tape, args, lead))
@@ -225,9 +223,7 @@ def _traced(
 
 
 def _moved(tape: Tape, local: LocalStep, size: Values, seen: Seen | None) -> Values:
-    """The point after a step of size (1,). If psi was looked at there, it is known, except in blocks with a lane that
-    ends elsewhere.
-    """
+    """The point after a step of size (1,); it is known if psi was looked at there, but for lanes that end elsewhere."""
     if seen is None or not local.looks_ahead:
         return local.point(size)
 

@@ -15,10 +15,10 @@ import numpy.typing as npt
 
 from liehom.base.disk import digest
 from liehom.base.errors import InputError, LiehomError, ShapeError
-from liehom.base.pytrees import Leaf, PerTrajectory, check_numbers, mapped
+from liehom.base.pytrees import PerTrajectory, check_numbers, mapped
 from liehom.base.store import Store, open_store
 from liehom.base.tasks import BUFFERSIZE, ExecutorLike, completed
-from liehom.base.typing import Array, IntegerArray, Pytree
+from liehom.base.typing import Array, IntegerArray
 from liehom.flow.action.field import GeneratorField, check_point
 from liehom.flow.action.fingerprint import events_by_name, fingerprint, stable_repr
 from liehom.flow.action.space import Action
@@ -164,7 +164,10 @@ class EnsembleProblem(NamedTuple):
             except ValueError:
                 raise ShapeError(f"dt has shape {np.shape(dt)}, the ensemble {self.start.shape[:-1]}") from None
         if "args" in options:
-            options = {**options, "args": _rows(options["args"], here)}
+            inner = mapped(
+                options["args"], lambda x: x.value.rows(here) if isinstance(x.value, PerTrajectory) else x.value
+            )
+            options = {**options, "args": inner}
         return self._replace(start=self.start[here], options=options)
 
     def ends(self) -> tuple[float, float]:
@@ -190,14 +193,18 @@ class EnsembleProblem(NamedTuple):
         with np.errstate(all="ignore"):
             values = np.asarray(field.psi(self.start, times))
             for rows in {bounds[0], bounds[-1]} if len(bounds) > 1 else ():
-                part = self.task(rows)
+                part, why = self.task(rows), None
                 try:
                     mine = np.asarray(part.made().psi(part.start, times[slice(*rows)]))
                     same = np.allclose(mine, values[slice(*rows)], rtol=1e-6, equal_nan=True)
                 except (ValueError, LiehomError) as error:
-                    raise _whole_only(rows) from error
+                    same, why = False, error
                 if not same:
-                    raise _whole_only(rows)
+                    raise ShapeError(
+                        f"psi of the trajectories {rows[0]} to {rows[1] - 1} is not what it is within the whole "
+                        "ensemble: does it hold a number for each trajectory? Pass it as args=PerTrajectory(array) to "
+                        "psi(m, t, args)"
+                    ) from why
         return field
 
     def fingerprint(self, field: GeneratorField, bounds: list[tuple[int, int]]) -> str:
@@ -252,23 +259,6 @@ def _stored(
         if kept is not None:
             kept.save(names[todo[number]], *as_arrays(solution))
         yield todo[number], solution
-
-
-# -- private helpers ---------------------------------------------------------------------------------------
-def _whole_only(rows: tuple[int, int]) -> ShapeError:
-    return ShapeError(
-        f"psi of the trajectories {rows[0]} to {rows[1] - 1} is not what it is within the whole ensemble: does it "
-        "hold a number for each trajectory? Pass it as args=PerTrajectory(array) to psi(m, t, args)"
-    )
-
-
-def _rows(args: Pytree, rows: slice) -> Pytree:
-    """args of some rows of an ensemble."""
-
-    def taken(leaf: Leaf) -> object:
-        return leaf.value.rows(rows) if isinstance(leaf.value, PerTrajectory) else leaf.value
-
-    return mapped(args, taken)
 
 
 # integrate_ensemble: an ensemble in chunks, each by `integrate`, on any executor and optionally stored on disk. The

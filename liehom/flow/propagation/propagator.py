@@ -19,10 +19,10 @@ from liehom.flow.action.field import GeneratorField, check_point
 from liehom.flow.action.space import Action
 from liehom.flow.door import Representation
 from liehom.flow.engines.arguments import (
+    CLOCKS,
     CallOptions,
     check_generator,
     check_option_names,
-    checked_clock,
     flag,
     has_jax,
     jax_span,
@@ -224,7 +224,9 @@ class Propagator:
         self._engines: dict[Step, Engine] = {}
         self._choices: dict[Hashable, tuple[Step, Engine]] = {}
         self._without_series: Step | None = None  # the default step if psi turns out to have no Taylor series
-        self._nominal = checked_clock(clock)
+        if clock not in CLOCKS:
+            raise InputError(f"clock is {displayed(clock)}, expected one of {', '.join(map(repr, CLOCKS))}")
+        self._nominal = clock == "nominal"
         self._action = _action(field.representation, exponential)
 
     def __call__(

@@ -254,10 +254,7 @@ def judgement(limits: SizeLimits, local: LocalStep, m: Values, size: Lanes, axes
 
 
 def judged(error: Values, allowed: Values, h: Values, order: int, axes: int = 0) -> tuple[BooleanArray, Array]:
-    """Whether the estimate (..., N) of an embedded pair accepts a step of size h, and the next step size.
-
-    The last `axes` leading axes are the sites of a lattice.
-    """
+    """Whether the estimate (..., N) of an embedded pair accepts a step of size h, and the next step size."""
     xp = namespace(error, h)
     ratio: Any = over_sites(length(error), axes) / allowed
     ratio = xp.where(xp.isfinite(ratio), ratio, NONFINITE_RATIO)

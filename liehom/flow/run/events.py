@@ -49,10 +49,7 @@ class Look(NamedTuple):
 
 @final
 class Events:
-    """The events of a run. A zero at the initial time is recorded if g leaves it in the right direction, but not
-    counted towards `terminal`. All zeros are found if g has at most one extremum within each step (else see
-    `max_step`). A zero at which g keeps its sign is not an event.
-    """
+    """The events of a run: the zeros of functions, of which one at the initial time does not count for `terminal`."""
 
     def __init__(self, functions: EventFunction | Sequence[EventFunction], args: Pytree = None) -> None:
         if not callable(functions) and not isinstance(functions, list | tuple):

@@ -263,13 +263,10 @@ class StepStatistics:
 
     def take_lowest(self, diagnostics: Diagnostics, lanes: IntegerArray, t: Array, m: Array) -> None:
         """Record those diagnostics at (t, m) of which the smallest is kept, for some trajectories of the ensemble."""
-        for name, (value, kind) in diagnostics.items():
-            if kind == "min":
-                new = np.broadcast_to(np.asarray(value, dtype=float), t.shape)
-                self._note_lowest(name, new, t, m)
-                least = np.array(self._total(name, kind))
-                np.minimum.at(least.reshape(-1), lanes, new)
-                self._totals[f"{kind}.{name}"] = least
+        lowest = {name: np.broadcast_to(x, t.shape) for name, (x, kind) in diagnostics.items() if kind == "min"}
+        for name, new in lowest.items():
+            self._note_lowest(name, new, t, m)
+        self.add_compiled(lanes, {name: (new, "min") for name, new in lowest.items()}, ())
 
     def _total(self, name: str, kind: str) -> Array:
         total = self._totals.get(f"{kind}.{name}")

@@ -158,14 +158,6 @@ MAX_MOVE_WITH_EVENTS = 0.5
 """With events, an adaptive step moves a point by at most |m| times this, so that g has few extrema in it."""
 
 
-class Stops(NamedTuple):
-    """Where the steps of a run stop."""
-
-    end: np.floating[Any]  # of the time span
-    total: Array | None  # steps of fixed size up to the end (...,); None for adaptive sizes
-    events: Events | None  # a step ends at a terminal event
-
-
 @final
 @dataclass(frozen=True, slots=True)
 class StepProposal:
@@ -232,10 +224,7 @@ class CountedField(GeneratorField):
 
 @final
 class Run:
-    """An integration: what is integrated, its `state`, the loop over steps, and the transitions of the lanes.
-
-    With compiled code, the fast path makes ordinary steps, those without an output time, an end or a failure in them.
-    """
+    """An integration: what is integrated, its `state`, the loop over steps, and the transitions of the lanes."""
 
     def __init__(self, action: Action, psi: Generator, step: Step, span: Span, start: Array, options: Options) -> None:
         self.action, self.options, self.span = action, options, span
@@ -259,11 +248,10 @@ class Run:
         self.keeps: bool = options.t_eval is None or options.dense_output
         self.logs = LOGGER.isEnabledFor(logging.DEBUG)  # asked once: a run without a log pays nothing for it
         self.step = step.prepare(action, self.psi, self.start, np.full(self.shape, span[0], dtype=self.dtype))
-        events = None if options.events is None else Events(options.events, psi.field.args)
-        total = None
+        self.events = None if options.events is None else Events(options.events, psi.field.args)
+        self.total: Array | None = None  # steps of fixed size up to the end (...,)
         if options.dt is not None:  # a rest below 1e-9 dt, or below round-off, is not a step
-            total = np.maximum(np.ceil(abs(span[1] - span[0]) / options.dt - (SLACK + self.rest / options.dt)), 1)
-        self.stops: Stops = Stops(span[1], total, events)
+            self.total = np.maximum(np.ceil(abs(span[1] - span[0]) / options.dt - (SLACK + self.rest / options.dt)), 1)
         self.fast_path: Callable[[Run], bool] | None = None  # makes steps; returns whether there are more to be made
         self.engines: dict[str, None] = {}  # what has made steps, in order
         self.state: RunState = self._initial_state(start)
@@ -336,30 +324,30 @@ class Run:
     def _fitted(self, now: RunState, local: LocalStep, size: Array) -> tuple[Array, Array, BooleanArray]:
         """Signed step sizes that do not pass the end, the times after them, and which steps are the last."""
         h = self.direction * np.where(now.active, size, 0).astype(self.dtype)
-        left = self.stops.end - now.t
+        left = self.span[1] - now.t
         if not self.options.nominal and local.clock:
-            h, passed, last, runs = fitted(local, h, left, halve=self.stops.total is None)
+            h, passed, last, runs = fitted(local, h, left, halve=self.total is None)
             if not runs.all():
                 self._fail_by_psi(now, now.active & ~runs, np.where(local.is_near_cone(h), CONE, CLOCK))
                 h, passed = np.where(now.active, h, 0), np.where(now.active, passed, 0)
             after, last = now.t + passed, last & now.active
-            return h, np.where(last, self.stops.end, after) if last.any() else after, last
+            return h, np.where(last, self.span[1], after) if last.any() else after, last
         dt = self.options.dt
-        if dt is None or self.stops.total is None:
+        if dt is None or self.total is None:
             last = now.active & (self.direction * (left - h) <= SLACK * np.abs(h))
             after = now.t + h
         else:  # by counting, so that round-off does not add up
             count = now.taken + 1
-            last = now.active & (count >= self.stops.total)
+            last = now.active & (count >= self.total)
             after = self.span[0] + count * (self.direction * dt)
         if last.any():
-            h, after = np.where(last, left, h), np.where(last, self.stops.end, after)
+            h, after = np.where(last, left, h), np.where(last, self.span[1], after)
         return h, after, last
 
     def _looked_into(self, now: RunState, proposal: StepProposal) -> tuple[StepProposal, BooleanArray]:
         """The step, shortened at a terminal event, and for which lanes it is; the events are recorded."""
         now.statistics.take(proposal.diagnostics, proposal.local, now.t, now.m, proposal.moves)
-        events = self.stops.events
+        events = self.events
         if events is None:
             return proposal, np.zeros(self.shape, dtype=bool)
         values = events.values(proposal.after, proposal.reached)
@@ -441,11 +429,11 @@ class Run:
         where = now.active & unsolvable(*self.tried, now.active, error)
         sizes = np.abs(self.tried[1])
         now.h = np.where(where, sizes / 2, now.h)
-        self._fail(now, where & ((self.stops.total is not None) | (sizes <= 2 * self.tiny)), code)
+        self._fail(now, where & ((self.total is not None) | (sizes <= 2 * self.tiny)), code)
 
     # -- the state ---------------------------------------------------------------------------------------
     def _initial_state(self, start: Array) -> RunState:
-        options, span, events = self.options, self.span, self.stops.events
+        options, span, events = self.options, self.span, self.events
         t = np.full(self.shape, span[0], dtype=self.dtype)
         samples = None
         if options.t_eval is not None:
@@ -498,7 +486,7 @@ class Run:
 
     def _fingerprint(self) -> str:
         """String that distinguishes this problem from others: what was given by name, and values of psi."""
-        o, events, field = self.options, self.stops.events, self.field
+        o, events, field = self.options, self.events, self.field
         functions = {"step": self.step, "exponential": self.action.exponential} | events_by_name(o.events)
         numbers = [0 if x is None else x for x in (o.dt, o.t_eval)]
         text = f"{stable_repr(self.step)} {self.action.exponential.name} {o.fixed_text()}"
@@ -510,7 +498,7 @@ class Run:
 
     def _fraction(self) -> float:
         passed = np.min(np.abs(self.state.t - self.span[0]), where=self.state.active, initial=np.inf)
-        length = float(abs(self.stops.end - self.span[0])) or 1.0
+        length = float(abs(self.span[1] - self.span[0])) or 1.0
         return float(min(passed / length, 1.0))
 
     # -- the result --------------------------------------------------------------------------------------
@@ -525,7 +513,7 @@ class Run:
             t, y = now.samples.times, now.samples.points
             if not self.shape:
                 t, y = t[: int(now.samples.done)], y[..., : int(now.samples.done)]
-        t_events, y_events = now.event_log.lists() if self.stops.events is not None else (None, None)
+        t_events, y_events = now.event_log.lists() if self.events is not None else (None, None)
         record, direction = now.statistics, float(self.direction)
         # sizes by the tolerance are those of the order that a step has: the order is not what such a run promises
         unkept = record.unkept_from if o.dt is not None else np.full(self.shape, np.nan)

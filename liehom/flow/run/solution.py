@@ -390,9 +390,7 @@ def solution_of(t: Array, y: Array, status: int, others: tuple[Any, ...]) -> Sol
 
 
 def interpolant(solution: Solution) -> DenseSolution | None:
-    """The solution as a function of time, `sol` or the steps made again; None if it does not know its steps, as when it
-    was read or merged, is known at `t_eval` only, or comes from compiled calls without a path.
-    """
+    """The solution as a function of time, `sol` or the steps made again; None if it does not know its steps."""
     if solution.sol is None and solution._steps is not None:
         return solution._steps()
     return solution.sol

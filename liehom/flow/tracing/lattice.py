@@ -34,15 +34,12 @@ REDUCTIONS = frozenset(["sum", "max", "min", "amax", "amin", "prod", "mean", "al
 
 @final
 class SiteInputs:
-    """The inputs of a graph that are loaded at a site of the lattice or at a shifted one.
-
-    `loads` has (plane, offset) by the index of an input; `arrays` over the lattice are the planes ("array", number, 0).
-    """
+    """The inputs of a graph that are loaded at a site of the lattice or at a shifted one."""
 
     def __init__(self, tape: Tape, sites: tuple[int, ...]) -> None:
         self.tape, self.sites = tape, sites
-        self.loads: dict[int, tuple[tuple[str, int, int], Offset]] = {}
-        self.arrays: list[Array] = []
+        self.loads: dict[int, tuple[tuple[str, int, int], Offset]] = {}  # by the index of an input
+        self.arrays: list[Array] = []  # over the lattice: the planes ("array", number, 0)
         self._known: dict[tuple[tuple[str, int, int], Offset], Expr] = {}
         self._numbers = count()
 
