@@ -64,8 +64,8 @@ from liehom.flow.tracing.machine import Kernel
 COPIES_WITH_EVENTS = 8  # arrays of the size of the path, about, while events are sought
 MIN_STEPS_WITH_ENDS = 64  # with terminal events, steps in the first call; further calls double their number
 MAX_PLANS = 64  # number of plans that are kept
-NEVER: tuple[Hashable, Numbers | None, Plan | None] = None, None, None
-"""Of the latest call without args: its form but the numbers, these, and its plan."""
+NEVER: tuple[Mapping[str, Any] | None, Numbers | None, Hashable, Plan | None] = None, None, None, None
+"""Of the latest call: its options, their numbers, and, without args, the rest of its form and its plan."""
 
 
 @final
@@ -127,19 +127,20 @@ class LlvmEngine:
                 key = None if events is None else events_key(events)
                 if times is not None and (times := floats("t_eval", times)) is None:
                     return None
+            before, known, same, plan = self._latest
+            kept: Mapping[str, Any] | None = options
             try:
-                numbers = numbers_of(**options)
-            except TypeError:  # sizes in an array are not hashable
-                numbers = numbers_of.__wrapped__(**options)
+                numbers = known if options == before else numbers_of(**options)
+            except (TypeError, ValueError):  # sizes in an array are not hashable, and may change in place
+                numbers, kept = numbers_of.__wrapped__(**options), None
             if points is None or numbers is None:
                 return None
             found = None if args is None else leaves(args)
             form = points.shape, times is None, key
-            same, known, plan = self._latest
             if numbers is not known or form != same or args is not None:
                 plan = self._plans.get(form_of(form, numbers, found))
-                if args is None:
-                    self._latest = form, numbers, plan
+                # True is 1, but not a number of looks
+                self._latest = kept if numbers.looks is None else None, numbers, form if args is None else None, plan
             if plan is None or self._watch.changed():  # type: ignore[union-attr]
                 return None
             return plan.call(numbers, points, begin, end, times, args, found)

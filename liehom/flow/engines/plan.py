@@ -103,9 +103,9 @@ def floats(what: str, given: object) -> Array | None:
     """An array of floats from an array, or from lists, of floats or integers."""
     value: Any = given
     if type(given) is list or type(given) is tuple:
-        if not KINDS.issuperset(map(type, given)):
-            refuse_masked(what, given)
         value = np.array(given)
+        if value.ndim != 1:
+            refuse_masked(what, given)
     elif type(given) is not np.ndarray:
         return None
     if value.dtype is FLOAT or value.dtype == FLOAT:

@@ -235,7 +235,11 @@ class Propagator:
         """The trajectories from y0, a `Solution`; parameters and options are those of `integrate`."""
         engine = self.engine
         if self.step is None:
-            _, engine = self._choice(options.get("dt"), options.get("rtol", RTOL), options.get("atol", ATOL))
+            wanted: Any = options.get("dt") is None, options.get("rtol", RTOL), options.get("atol", ATOL)
+            try:
+                _, engine = self._choices[wanted]
+            except (KeyError, TypeError):  # an array is not hashable
+                _, engine = self._choice(options.get("dt"), *wanted[1:])
         again: Callable[..., Solution | None] | None = getattr(engine, "again", None)
         args = self.args if args is None else args
         solution = None if again is None else again(t_span, y0, options, args)

@@ -415,6 +415,19 @@ def test_a_number_is_not_taken_for_one_of_another_type_that_is_equal() -> None:
         made((0.0, 1.0), START, args=np.ma.masked_array(np.ones(3)))
 
 
+def test_sizes_in_a_list_may_change_in_place_between_calls() -> None:
+    made, engine = propagator(step=lh.Taylor(4))
+    starts, sizes = sphere(2), [0.1, 0.3]
+    for last in (0.3, 0.05, 0.2):
+        sizes[1] = last
+        assert made((0.0, 3.0), starts, dt=sizes).n_steps.tolist() == [30, round(3 / last)]
+    adapted = made((0.0, 3.0), starts).n_steps
+    for _ in range(2):
+        np.testing.assert_array_equal(made((0.0, 3.0), starts).n_steps, adapted)
+        assert made((0.0, 3.0), starts, dt=sizes).n_steps.tolist() == [30, 15]
+    assert engine.solved == 2
+
+
 @pytest.mark.parametrize("shape", [(1,), (2, 3), (1, 1)])
 @pytest.mark.parametrize("options", [{"dt": 0.1}, {"rtol": 1e-6}, {"rtol": 1e-6, "t_eval": [0.0, 0.5, 1.0]}], ids=str)
 def test_solutions_have_the_axes_of_the_points(options: dict[str, Any], shape: tuple[int, ...]) -> None:
