@@ -1,10 +1,11 @@
 """AutoEngine: steps by numpy at first, then by Python or machine code written from the trace, as soon as that pays.
 
-The steps made before decide, by their number and not by their time, so that a script gives the same numbers again:
+The steps made before and those ahead decide, by their number and not by their time, so that a script gives the same
+numbers again. A number of steps ahead follows from the step size, or from the first steps of adaptive sizes.
 
 * The first steps are those of numpy. A trace costs about as much as `NUMPY_STEPS` of them.
 * Then a few trajectories are stepped by straight-line Python (`PythonKernel`), if the step can be traced.
-* Then by machine code, if llvmlite can be imported, as soon as it would have been made for the work done so far.
+* Then by machine code, if llvmlite can be imported, as soon as it would have been made for this number of steps.
 
 Fields on lattices, extended precision, events, and checkpoints, which go on bit for bit, stay with numpy. So do a psi
 that changes its own state or does not repeat its value, and a step that a user has written, which may do so.
@@ -34,7 +35,9 @@ from liehom.flow.tracing.python_kernel import PythonKernel
 FEW = 8  # trajectories, at most, that Python makes faster than numpy, one after the other
 # Numbers of steps, and what is added to them for each entry of the matrices of an action, in which traces grow.
 NUMPY_STEPS = 32, 0.5  # of numpy before a step is traced
-MANY_NUMPY_STEPS = 128, 4.0  # the same for more than FEW trajectories, which only machine code makes faster
+MANY_NUMPY_STEPS = 64, 4.0  # the same for more than FEW trajectories, which only machine code makes faster
+NUMBERS_OF_A_STEP = 2000  # coordinates of all points that cost numpy as much as a step does by itself
+FIRST_STEPS = 8  # of adaptive sizes, after which their number to the end is estimated
 PYTHON_STEPS = 2000, 10.0  # of trajectories in Python before machine code is made
 STEPS_OF_A_CALL = 100  # steps in Python that cost as much as a call
 PLAIN = ("liehom.flow.methods.", "liehom.flow.steps.")  # modules with steps that are functions of point, time and size
@@ -54,7 +57,7 @@ class AutoEngine:
     def _begin(self) -> None:
         """Forget all code."""
         self._watch: Watch | None = None
-        self.made = {"numpy": 0, "python": 0}  # steps
+        self.made = {"numpy": 0.0, "python": 0.0}  # steps
         self.refused = set[type[Kernel]]() if find_spec("llvmlite") else {Kernel}
         python = CodeStore(PythonKernel)
         self.stores = {PythonKernel: python, Kernel: CodeStore(Kernel, python.graphs)}
@@ -91,18 +94,23 @@ class AutoEngine:
                 self.refused |= self.stores.keys()
         return not self.refused >= self.stores.keys()
 
-    def kind(self, start: Values) -> type[Kernel] | None:
-        """The kind of code for initial points (..., N); None as long as numpy makes their steps."""
+    def kind(self, start: Values, ahead: float = 0.0) -> type[Kernel] | None:
+        """The kind of code for initial points (..., N), with so many steps ahead; None if numpy makes them."""
         *lead, n = np.shape(start)
         few, size = int(np.prod(lead, dtype=int)) <= FEW and PythonKernel not in self.refused, n * self._generators
+        steps = self.counted(start, ahead)
 
         def is_paid(what: str, price: tuple[int, float]) -> bool:
-            return self.made[what] >= price[0] + price[1] * size
+            return self.made[what] + steps[what] >= price[0] + price[1] * size
 
         if not is_paid("numpy", NUMPY_STEPS if few else MANY_NUMPY_STEPS):
             return None
         wanted = [Kernel] if not few or is_paid("python", PYTHON_STEPS) else []
         return next((kind for kind in [*wanted, *[PythonKernel] * few] if kind not in self.refused), None)
+
+    def counted(self, start: Values, steps: float) -> dict[str, float]:
+        """A number of steps from initial points (..., N) as `made` counts them."""
+        return {"numpy": steps * (1 + start.size / NUMBERS_OF_A_STEP), "python": steps * start.size / start.shape[-1]}
 
 
 @final
@@ -115,17 +123,21 @@ class _Ladder:
 
     def __call__(self, run: Run) -> bool:
         """Make steps; whether there are more to be made."""
-        engine = self._engine
-        while (kind := engine.kind(run.start)) is not None:
-            if kind not in self._compiled and not self._begin(run, kind):
-                engine.refused.add(kind)
-                continue
+        engine, ahead = self._engine, _steps_ahead(run)
+        while (kind := engine.kind(run.start, ahead)) is not None:
+            if kind not in self._compiled:
+                if not self._begin(run, kind):
+                    engine.refused.add(kind)
+                    continue
+                steps = engine.counted(run.start, ahead)
+                engine.made["numpy"] += steps["numpy"]
+                engine.made["python"] += steps["python"] if kind is Kernel else 0
             taken = int(np.sum(run.state.taken))
             more = self._compiled[kind](run)
             if kind is PythonKernel:
                 engine.made["python"] += int(np.sum(run.state.taken)) - taken
             return more
-        engine.made["numpy"] += 1
+        engine.made["numpy"] += engine.counted(run.start, 1)["numpy"]
         return False
 
     def _begin(self, run: Run, kind: type[Kernel]) -> bool:
@@ -142,6 +154,15 @@ class _Ladder:
             return False  # no others: those of psi on tracers are `TraceError`, and a fault of the library is seen
         self._compiled[kind] = compiled
         return True
+
+
+def _steps_ahead(run: Run) -> float:
+    """The number of steps to the end, as far as it can be known; 0 before the first ones."""
+    taken = int(np.max(run.state.taken))
+    if run.total is not None:
+        return float(np.max(run.total)) - taken if taken else 0.0
+    fraction = run.fraction() if taken >= FIRST_STEPS else 1.0
+    return taken * (1 / fraction - 1) if fraction > 0 else 0.0
 
 
 def _is_compiled(problem: Problem) -> bool:

@@ -466,7 +466,7 @@ class Run:
                         self.advance(state)
                     if path is not None:
                         snapshot = state.snapshot()
-                    progress.update(self._fraction)
+                    progress.update(self.fraction)
                     if path is not None and wall.monotonic() >= due:
                         begin = wall.monotonic()
                         files.save(path, mark, state.arrays())
@@ -496,7 +496,8 @@ class Run:
             look = partial(events.values, self.state.t, self.start)
         return fingerprint(self.action, field, self.start, self.span, functions, others, look)
 
-    def _fraction(self) -> float:
+    def fraction(self) -> float:
+        """How much of the time span the slowest trajectory has passed."""
         passed = np.min(np.abs(self.state.t - self.span[0]), where=self.state.active, initial=np.inf)
         length = float(abs(self.span[1] - self.span[0])) or 1.0
         return float(min(passed / length, 1.0))

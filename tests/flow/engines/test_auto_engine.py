@@ -13,6 +13,7 @@ import liehom as lh
 from liehom.flow.engines import auto_engine, llvm_engine
 from liehom.flow.engines.auto_engine import FEW, PYTHON_STEPS, AutoEngine
 from liehom.flow.engines.llvm_engine import CodeStore
+from liehom.flow.run.run import Run
 from liehom.flow.steps.step import OneExponential
 from liehom.flow.tracing.machine import Kernel
 from tests.flow.engines.test_compiled import BODY, SPACES, START, STEPS, a_field, assert_same, sphere
@@ -119,16 +120,39 @@ def test_a_psi_that_ends_has_the_same_message() -> None:
         np.testing.assert_allclose(made.y, plain.y, rtol=0, atol=1e-12)
 
 
-def test_long_runs_climb_from_numpy_to_python_and_machine_code() -> None:
+def test_long_runs_go_to_machine_code_after_a_step() -> None:
     step, times = lh.RKMK("rk4"), [300.0]
     wanted = lh.integrate(BODY, (0, 300), START, step=step, dt=0.1, t_eval=times, engine="numpy").y
     short = lh.integrate(BODY, (0, 3), START, step=step, dt=0.1)
     assert short.report.engine == "numpy"  # not worth a trace
     propagator = lh.Propagator(BODY, step)
     assert propagator.engine.name == "auto"
-    for name in ("numpy, python, llvm", "llvm", "llvm"):
+    for name in ("numpy, llvm", "llvm", "llvm"):
         sol = propagator((0, 300), START, dt=0.1, t_eval=times)
         assert sol.report.engine == name and np.abs(sol.y - wanted).max() < 1e-11
+
+
+@pytest.mark.parametrize(("count", "end", "name"), [
+    (1, 20.0, "numpy"), (1, 200.0, "numpy, python"), (1, 10000.0, "numpy, llvm"), (10, 20.0, "numpy"),
+    (10, 200.0, "numpy, llvm"), (3000, 20.0, "numpy, llvm"),
+])  # fmt: skip
+def test_steps_of_adaptive_sizes_are_foreseen_after_a_few(
+    count: int, end: float, name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Numpy makes 8 steps of a run that is worth code, and not as many as the code costs."""
+    steps, advance = [0], Run.advance
+
+    def counted(run: Any, now: Any) -> None:
+        steps[0] += 1
+        advance(run, now)
+
+    monkeypatch.setattr(Run, "advance", counted)
+    propagator = lh.Propagator(BODY)
+    y0 = START if count == 1 else sphere(count)
+    sol = propagator((0, end), y0, t_eval=[end])
+    assert sol.report.engine == name and (steps[0] == 8 or name == "numpy"), (steps, np.max(sol.n_steps))
+    if name.endswith("llvm"):
+        assert propagator((0, end), y0, t_eval=[end]).report.engine == "llvm" and steps[0] == 8
 
 
 def test_a_step_without_python_code_climbs_to_machine_code(monkeypatch: pytest.MonkeyPatch) -> None:
