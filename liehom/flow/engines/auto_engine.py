@@ -13,6 +13,7 @@ that changes its own state or does not repeat its value, and a step that a user 
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from importlib.util import find_spec
 from typing import final
 
@@ -37,11 +38,16 @@ FEW = 8  # trajectories, at most, that Python makes faster than numpy, one after
 NUMPY_STEPS = 32, 0.5  # of numpy before a step is traced
 MANY_NUMPY_STEPS = 64, 4.0  # the same for more than FEW trajectories, which only machine code makes faster
 NUMBERS_OF_A_STEP = 2000  # coordinates of all points that cost numpy as much as a step does by itself
+CALLS_OF_A_STEP = (
+    3  # of psi, in units of the order; with more of them, as those of implicit methods, a step counts more
+)
 FIRST_STEPS = 8  # of adaptive sizes, after which their number to the end is estimated
+FORESIGHT = 10  # of adaptive sizes, which may grow, the largest estimate in units of the steps made
 PYTHON_STEPS = 2000, 10.0  # of trajectories in Python before machine code is made
 STEPS_OF_A_CALL = 100  # steps in Python that cost as much as a call
 PLAIN = ("liehom.flow.methods.", "liehom.flow.steps.")  # modules with steps that are functions of point, time and size
 STEPS_AT_ONCE = 500  # between two looks at these numbers
+NONE = {"numpy": 0.0, "python": 0.0}  # steps by numpy and by Python
 
 
 @final
@@ -57,7 +63,7 @@ class AutoEngine:
     def _begin(self) -> None:
         """Forget all code."""
         self._watch: Watch | None = None
-        self.made = {"numpy": 0.0, "python": 0.0}  # steps
+        self.made = NONE.copy()
         self.refused = set[type[Kernel]]() if find_spec("llvmlite") else {Kernel}
         python = CodeStore(PythonKernel)
         self.stores = {PythonKernel: python, Kernel: CodeStore(Kernel, python.graphs)}
@@ -94,23 +100,18 @@ class AutoEngine:
                 self.refused |= self.stores.keys()
         return not self.refused >= self.stores.keys()
 
-    def kind(self, start: Values, ahead: float = 0.0) -> type[Kernel] | None:
-        """The kind of code for initial points (..., N), with so many steps ahead; None if numpy makes them."""
+    def kind(self, start: Values, ahead: Mapping[str, float] = NONE) -> type[Kernel] | None:
+        """The kind of code for initial points (..., N), with so many steps ahead, as `made`; None for numpy."""
         *lead, n = np.shape(start)
         few, size = int(np.prod(lead, dtype=int)) <= FEW and PythonKernel not in self.refused, n * self._generators
-        steps = self.counted(start, ahead)
 
         def is_paid(what: str, price: tuple[int, float]) -> bool:
-            return self.made[what] + steps[what] >= price[0] + price[1] * size
+            return self.made[what] + ahead[what] >= price[0] + price[1] * size
 
         if not is_paid("numpy", NUMPY_STEPS if few else MANY_NUMPY_STEPS):
             return None
         wanted = [Kernel] if not few or is_paid("python", PYTHON_STEPS) else []
         return next((kind for kind in [*wanted, *[PythonKernel] * few] if kind not in self.refused), None)
-
-    def counted(self, start: Values, steps: float) -> dict[str, float]:
-        """A number of steps from initial points (..., N) as `made` counts them."""
-        return {"numpy": steps * (1 + start.size / NUMBERS_OF_A_STEP), "python": steps * start.size / start.shape[-1]}
 
 
 @final
@@ -120,25 +121,35 @@ class _Ladder:
     def __init__(self, problem: Problem, engine: AutoEngine) -> None:
         self._problem, self._engine = problem, engine
         self._compiled: dict[type[Kernel], CompiledRun] = {}
+        self._passed, self._ahead = (0, 0.0), 0.0
 
     def __call__(self, run: Run) -> bool:
         """Make steps; whether there are more to be made."""
-        engine, ahead = self._engine, _steps_ahead(run)
+        engine, ahead = self._engine, _counted(run, self._steps_ahead(run))
         while (kind := engine.kind(run.start, ahead)) is not None:
             if kind not in self._compiled:
                 if not self._begin(run, kind):
                     engine.refused.add(kind)
                     continue
-                steps = engine.counted(run.start, ahead)
-                engine.made["numpy"] += steps["numpy"]
-                engine.made["python"] += steps["python"] if kind is Kernel else 0
+                engine.made["numpy"] += ahead["numpy"]
+                engine.made["python"] += ahead["python"] if kind is Kernel else 0
             taken = int(np.sum(run.state.taken))
             more = self._compiled[kind](run)
             if kind is PythonKernel:
                 engine.made["python"] += int(np.sum(run.state.taken)) - taken
             return more
-        engine.made["numpy"] += engine.counted(run.start, 1)["numpy"]
+        engine.made["numpy"] += _counted(run, 1)["numpy"]
         return False
+
+    def _steps_ahead(self, run: Run) -> float:
+        """The number of steps to the end, of the last size, as far as it is known; 0 before the first ones."""
+        taken = int(np.max(run.state.taken))
+        if run.total is not None:
+            return float(np.max(run.total)) - taken if taken else 0.0
+        (before, begin), now = self._passed, run.fraction()
+        if now > begin:
+            self._passed, self._ahead = (taken, now), (taken - before) * (1 - now) / (now - begin)
+        return min(self._ahead, FORESIGHT * taken) if taken >= FIRST_STEPS else 0.0
 
     def _begin(self, run: Run, kind: type[Kernel]) -> bool:
         """Trace and write the code of a run, if that is possible; numpy makes the steps of all others."""
@@ -156,13 +167,11 @@ class _Ladder:
         return True
 
 
-def _steps_ahead(run: Run) -> float:
-    """The number of steps to the end, as far as it can be known; 0 before the first ones."""
-    taken = int(np.max(run.state.taken))
-    if run.total is not None:
-        return float(np.max(run.total)) - taken if taken else 0.0
-    fraction = run.fraction() if taken >= FIRST_STEPS else 1.0
-    return taken * (1 / fraction - 1) if fraction > 0 else 0.0
+def _counted(run: Run, steps: float) -> dict[str, float]:
+    """A number of steps of a run: those of numpy by what they cost, those of Python for all trajectories."""
+    calls = run.state.calls / max(1, int(np.max(run.state.taken)))
+    cost = max(1.0, calls / (CALLS_OF_A_STEP * run.step.order)) * (1 + run.start.size / NUMBERS_OF_A_STEP)
+    return {"numpy": steps * cost, "python": steps * run.start.size / run.start.shape[-1]}
 
 
 def _is_compiled(problem: Problem) -> bool:
