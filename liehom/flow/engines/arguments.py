@@ -20,7 +20,8 @@ from liehom.flow.action.space import Action, tight_frame
 from liehom.flow.door import Representation
 from liehom.flow.engines.engine import Engine
 from liehom.flow.run.events import EventFunction
-from liehom.flow.run.options import Span, points_of
+from liehom.flow.run.options import ATOL, Options, Span, points_of
+from liehom.flow.run.solution import checked_path
 from liehom.flow.series.arrays import is_jax, is_traced
 from liehom.flow.steps.corrected import Corrected
 from liehom.flow.steps.step import ExponentialLike, Step, StepLike
@@ -161,9 +162,9 @@ OF_PROPAGATOR = ("step", "exponential", "clock", "engine")  # what a propagator 
 OPTIONS = tuple({**EnsembleOptions.__annotations__, **FileOptions.__annotations__})
 
 
-def check_option_names(unknown: Iterable[str]) -> None:
+def check_option_names(given: Iterable[str]) -> None:
     """Raise TypeError if there is an option that a call does not have, with the one that was meant."""
-    for name in unknown:
+    for name in set(given).difference(CallOptions.__annotations__):
         if name in OF_PROPAGATOR:
             raise TypeError(f"{name} is given once, as in Propagator(field, {name}=...), and not to a call")
         near = get_close_matches(name, OPTIONS, n=1)
@@ -185,6 +186,27 @@ def least_atol(atol: npt.ArrayLike, size: int) -> float:
     if not bool(np.all(values >= 0)):
         raise InputError(f"atol is {displayed(atol)}, expected positive numbers")
     return float(values.min())
+
+
+POSITIVE = dict.fromkeys(["rtol", "min_step", "checkpoint_every"], True)  # numbers, and whether they may be 0
+POSITIVE |= dict.fromkeys(["max_step", "first_step", "max_steps"], False)
+
+
+def checked_options(given: CallOptions, size: int, dt: Array | None, t_eval: Array | None, nominal: bool) -> Options:
+    """The options of a call for points of N coordinates, with its step sizes and times."""
+    o: Any = {name: x for name, x in given.items() if name != "first_step" or x is not None}
+    o |= {name: positive(name, o[name], zero=zero) for name, zero in POSITIVE.items() if name in o}
+    o["first_step"] = o.get("first_step", o.get("min_step")) or None
+    o |= {"atol": least_atol(o.get("atol", ATOL), size), "looks": number_of_looks(o.get("looks"))}
+    o["dense_output"] = flag("dense_output", o.get("dense_output", False))
+    path = o.get("checkpoint")
+    o |= {"dt": dt, "t_eval": t_eval, "checkpoint": None if path is None else checked_path(path)}
+    options = Options(nominal=nominal, **o)
+    if options.min_step > options.max_step:
+        raise InputError(f"min_step is {options.min_step}, larger than max_step, {options.max_step}")
+    if options.dt is None and options.rtol == 0 and options.atol == 0:
+        raise InputError("rtol and atol are both 0: no step size meets that; give one of them, or dt")
+    return options
 
 
 def flag(name: str, value: object) -> bool:

@@ -38,7 +38,7 @@ from liehom.flow.methods.stability import MIN_STEPS
 from liehom.flow.run.check import gap_of
 from liehom.flow.run.control import SLACK
 from liehom.flow.run.options import ATOL, END, MESSAGES, RTOL
-from liehom.flow.run.records import EventLog, StepStatistics
+from liehom.flow.run.records import EventLog, StepStatistics, without_gaps
 from liehom.flow.run.solution import DenseSolution, Solution, solution_of
 from liehom.flow.steps.step import Generator, Step
 from liehom.flow.tracing.graph import LaneConstant
@@ -508,9 +508,7 @@ class Plan:
         moved = path[:, n + 1] != 0
         if moved.all():
             return path
-        order = np.argsort(~moved, axis=0, kind="stable")[: int(moved.sum(axis=0).max(initial=0))]
-        path, moved = (np.take_along_axis(x, i, axis=0) for x, i in ((path, order[:, None]), (moved, order)))
-        return np.where(moved[:, None], path, np.nan)
+        return without_gaps(path.swapaxes(1, 2), moved).swapaxes(1, 2)
 
     def _others(
         self, task: Task, args: Pytree, state: Array | bytes, path: Array, start: Array | None, log: EventLog | None

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Hashable, Iterable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
@@ -23,13 +22,12 @@ from liehom.flow.engines.arguments import (
     CallOptions,
     check_generator,
     check_option_names,
-    flag,
+    checked_options,
     has_jax,
     jax_span,
     jax_start,
     jax_times,
     least_atol,
-    number_of_looks,
     positive,
     shapes_named,
     step_sizes,
@@ -46,9 +44,8 @@ from liehom.flow.engines.sensitivity import Sensitivity
 from liehom.flow.methods.low_order import LieTaylor
 from liehom.flow.methods.stability import warn_of_stiffness
 from liehom.flow.methods.taylor import Taylor
-from liehom.flow.run.events import EventFunction
-from liehom.flow.run.options import ATOL, RTOL, Options, Span, points_of, span_of
-from liehom.flow.run.solution import Solution, checked_path, warn_of_failure
+from liehom.flow.run.options import ATOL, RTOL, Span, points_of, span_of
+from liehom.flow.run.solution import Solution, warn_of_failure
 from liehom.flow.series.arrays import is_jax
 from liehom.flow.steps.conserving import ConservingStep
 from liehom.flow.steps.corrected import CorrectedStep, check_adaptive
@@ -326,65 +323,26 @@ class Propagator:
         return self._engines[step]
 
     def problem(
-        self,
-        t_span: Iterable[float] | Span,
-        y0: npt.ArrayLike,
-        *,
-        args: Pytree = None,
-        dt: npt.ArrayLike | None = None,
-        rtol: float = RTOL,
-        atol: npt.ArrayLike = ATOL,
-        t_eval: npt.ArrayLike | None = None,
-        dense_output: bool = False,
-        events: EventFunction | Sequence[EventFunction] | None = None,
-        max_step: float = np.inf,
-        min_step: float = 0.0,
-        first_step: float | None = None,
-        max_steps: int = 10_000_000,
-        looks: int | None = None,
-        progress: bool | Callable[[float], object] = False,
-        checkpoint: str | os.PathLike[str] | None = None,
-        checkpoint_every: float = 30.0,
-        **unknown: object,
+        self, t_span: Iterable[float] | Span, y0: npt.ArrayLike, *, args: Pytree = None, **options: Unpack[CallOptions]
     ) -> Problem:
         """The `Problem` of a call, with all arguments checked."""
-        check_option_names(unknown)
-        step, _ = self._choice(dt, rtol, atol)
+        check_option_names(options)
+        dt, t_eval = options.get("dt"), options.get("t_eval")
+        step, _ = self._choice(dt, options.get("rtol", RTOL), options.get("atol", ATOL))
         timed = self.engine.name == "jax" and traces_times(t_span, (dt, t_eval))
         start, orbit_dimension, span, action, bound, args = self._started(t_span, y0, args, step, timed=timed)
         if self.step is None and not (timed or is_jax(start) or has_series(bound, np.asarray(start), float(span[0]))):
             step = self._without_series = as_step("dop853")
             self._choices.clear()
-        least = positive("min_step", min_step, zero=True)
         if timed:
             sizes, times = jax_times(dt, t_eval, start)
         else:
             sizes = None if dt is None else step_sizes(dt, start, span)
             times = None if t_eval is None else times_of(t_eval, span)
-        options = Options(
-            dt=sizes,
-            rtol=positive("rtol", rtol, zero=True),
-            atol=least_atol(atol, start.shape[-1]),
-            t_eval=times,
-            dense_output=flag("dense_output", dense_output),
-            events=events,
-            nominal=self._nominal,
-            max_step=positive("max_step", max_step),
-            min_step=least,
-            first_step=(least or None) if first_step is None else positive("first_step", first_step),
-            max_steps=positive("max_steps", max_steps),
-            looks=number_of_looks(looks),
-            checkpoint_every=positive("checkpoint_every", checkpoint_every, zero=True),
-            progress=progress,
-            checkpoint=None if checkpoint is None else checked_path(checkpoint),
-        )
-        if options.min_step > options.max_step:
-            raise InputError(f"min_step is {options.min_step}, larger than max_step, {options.max_step}")
-        if options.dt is None and options.rtol == 0 and options.atol == 0:
-            raise InputError("rtol and atol are both 0: no step size meets that; give one of them, or dt")
-        if options.dt is None and (timed or span[0] != span[1]):  # else no step is made
+        checked = checked_options(options, start.shape[-1], sizes, times, self._nominal)
+        if checked.dt is None and (timed or span[0] != span[1]):  # else no step is made
             check_adaptive(step, action, start, orbit_dimension)
-        return Problem(action, self.field, step, span, start, orbit_dimension, options, bound, args)
+        return Problem(action, self.field, step, span, start, orbit_dimension, checked, bound, args)
 
     def _started(
         self, t_span: Iterable[float] | Span, y0: npt.ArrayLike, args: Pytree, step: Step, *, timed: bool

@@ -51,16 +51,16 @@ class Options:
     """Checked options of a run: see `integrate`."""
 
     dt: Array | None  # fixed step sizes (...,); None for adaptive ones
-    rtol: float
-    atol: float
     t_eval: Array | None  # in the direction of integration
-    dense_output: bool
-    events: EventFunction | Sequence[EventFunction] | None
     nominal: bool  # time advances by the parameter of the step, not by its clock τ
-    max_step: float
-    first_step: float | None
-    max_steps: float
-    checkpoint_every: float
+    rtol: float = RTOL
+    atol: float = ATOL
+    dense_output: bool = False
+    events: EventFunction | Sequence[EventFunction] | None = None
+    max_step: float = np.inf
+    first_step: float | None = None
+    max_steps: float = 1e7
+    checkpoint_every: float = 30.0
     progress: bool | Callable[[float], object] = False
     checkpoint: Path | None = None  # a file that can be written
     min_step: float = 0.0

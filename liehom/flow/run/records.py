@@ -445,12 +445,8 @@ class Path:
         """Times (n + 1, ...), points (n + 1, ..., N) and sizes (n, ...) without gaps, then NaN (sizes: 0)."""
         times, points, sizes, moved = self._whole()
         if not bool(moved.all()):
-            order = np.argsort(~moved, axis=0, kind="stable")[: int(moved.sum(axis=0).max(initial=1))]
-            moved = np.take_along_axis(moved, order, axis=0)
-            times = np.where(moved, np.take_along_axis(times, order, axis=0), np.nan)
-            sizes = np.where(moved, np.take_along_axis(sizes, order, axis=0), 0)
-            points = np.where(moved[..., None], np.take_along_axis(points, order[..., None], axis=0), np.nan)
-        return times, points, sizes[1:]
+            points, times, sizes = (without_gaps(x, moved) for x in (points, times, sizes))
+        return times, points, np.nan_to_num(sizes[1:])
 
     def arrays(self) -> dict[str, npt.NDArray[Any]]:
         """The state as named arrays, for a checkpoint."""
@@ -459,6 +455,13 @@ class Path:
     def restore(self, arrays: Mapping[str, npt.NDArray[Any]]) -> None:
         """Replace the state by one that `arrays` returned."""
         self._blocks = [tuple(arrays[name] for name in PATH_NAMES)]
+
+
+def without_gaps(rows: Array, moved: BooleanArray) -> Array:
+    """Rows (j, L, ...) of which those are kept in which a trajectory moved, then NaN."""
+    moved = moved.reshape(*moved.shape, *[1] * (rows.ndim - moved.ndim))
+    order = np.argsort(~moved, axis=0, kind="stable")[: int(moved.sum(axis=0).max(initial=1))]
+    return np.where(np.take_along_axis(moved, order, axis=0), np.take_along_axis(rows, order, axis=0), np.nan)
 
 
 def of_lanes(entries: Sequence[npt.NDArray[Any]], shape: tuple[int, ...]) -> npt.NDArray[Any]:
@@ -475,18 +478,12 @@ def of_lanes(entries: Sequence[npt.NDArray[Any]], shape: tuple[int, ...]) -> npt
 class Samples:
     """Points at requested times, filled in when a step passes them."""
 
-    def __init__(self, times: Array, shape: tuple[int, ...], dtype: npt.DTypeLike, direction: float) -> None:
-        self.times = times
-        self.points: Array = np.full((*shape, len(times)), np.nan, dtype=dtype)
-        self.done: IntegerArray = np.zeros(shape[:-1], dtype=int)
-        self._direction = direction
-        self._ascending = direction * times
-
-    def start(self, t: np.floating[Any], m: Array) -> None:
-        """Fill in the initial points if the first requested time is the initial time."""
-        if len(self.times) and self.times[0] == t:
-            self.points[..., 0] = m
-            self.done = self.done + 1
+    def __init__(self, times: Array, t: np.floating[Any], m: Array, direction: float) -> None:
+        self.times, self._direction, self._ascending = times, direction, direction * times
+        self.points: Array = np.full((*m.shape, len(times)), np.nan, dtype=m.dtype)
+        first = int(t in times[:1])
+        self.done: IntegerArray = np.full(m.shape[:-1], first)
+        self.points[..., :first] = m[..., None]
 
     def fill(self, at: Callable[[Array, BooleanArray], Array], after: Array, moves: BooleanArray) -> None:
         """Fill in the times up to `after` by at(time, here), for the trajectories that move."""

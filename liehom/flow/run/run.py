@@ -435,10 +435,9 @@ class Run:
     def _initial_state(self, start: Array) -> RunState:
         options, span, events = self.options, self.span, self.events
         t = np.full(self.shape, span[0], dtype=self.dtype)
-        samples = None
-        if options.t_eval is not None:
-            samples = Samples(options.t_eval, start.shape, self.dtype, float(self.direction))
-            samples.start(span[0], start)
+        times, samples = options.t_eval, None
+        if times is not None:
+            samples = Samples(times, span[0], start, float(self.direction))
         calls, self.calls = self.calls, 0
         return RunState(
             t=t, m=self.start, active=np.full(self.shape, bool(span[0] != span[1])),

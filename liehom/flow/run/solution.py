@@ -7,7 +7,6 @@ import json
 import os
 import pickle
 import textwrap
-import threading
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields
@@ -158,16 +157,11 @@ def checked_path(path: str | os.PathLike[str]) -> Path:
     """The path of a checkpoint, after a test that a file can be written there."""
     try:
         target = Path(os.fsdecode(path))
+        check_target(target, force=True)
     except TypeError:
         raise InputError(f"checkpoint is {path!r}, expected the path of a file") from None
-    if not target.name or os.path.isdir(target):
-        raise InputError(f"the checkpoint {os.fsdecode(path)!r} is a directory, expected the path of a file")
-    trial = target.with_name(f".{target.name}.{os.getpid()}.{threading.get_ident()}.part")
-    try:
-        write_atomically(trial, b"")
-        trial.unlink()
-    except (OSError, ValueError) as error:
-        raise _not_writable(target, error) from None
+    except FormatError as error:
+        raise InputError(f"the checkpoint {error}") from None
     return target
 
 
@@ -177,7 +171,7 @@ def save(path: str | os.PathLike[str], fingerprint: str, state: Mapping[str, npt
     try:
         write_atomically(path, lambda file: write_arrays(file, state, texts))
     except OSError as error:
-        raise _not_writable(Path(path), error) from None
+        raise InputError(f"the checkpoint {os.fspath(path)!r} cannot be written: {error.strerror}") from None
 
 
 def load(path: str | os.PathLike[str], fingerprint: str) -> dict[str, npt.NDArray[Any]]:
@@ -189,11 +183,6 @@ def load(path: str | os.PathLike[str], fingerprint: str) -> dict[str, npt.NDArra
             "another path"
         )
     return state
-
-
-def _not_writable(target: Path, error: Exception) -> InputError:
-    reason = getattr(error, "strerror", None) or error
-    return InputError(f"the checkpoint {os.fspath(target)!r} cannot be written: {reason}")
 
 
 # Solution, the result of `integrate` in the form of scipy's solve_ivp, in memory and on disk.

@@ -217,21 +217,23 @@ class PythonKernel(Kernel):
         for lane in range(known["first"], known["last"]):
             row = dict(zip(self.names, state[:, lane].tolist(), strict=True))
             start: list[float] = known["start"][: self.graph.size, lane].tolist()
-            given = self._given(start, lane, known)
-            if not self._called("begin", *start, *given)[-1]:
+            given, may_begin = self._given(start, lane, known)
+            if not may_begin:
                 row["alive"] = FAILED
             elif row["alive"] > 0:
                 self._run(row, given, lane, known)
             state[:, lane] = list(row.values())
 
-    def _given(self, start: list[float], lane: int, fields: dict[str, Any]) -> list[float]:
-        """The values of inputs -1, -2, ... of a lane."""
+    def _given(self, start: list[float], lane: int, fields: dict[str, Any]) -> tuple[list[float], bool]:
+        """The values of inputs -1, -2, ... of a lane, and whether it may begin at its point."""
         known = [0.0] * len(self._constants)
         for place, x in enumerate(self._constants):
             if not isinstance(x, Expr):
                 known[place] = float(fields["constants"][x[1]] if x[0] == "run" else fields["rows"][x[1], lane])
-        computed = iter(self._called("begin", *start, *known))
-        return [next(computed) if isinstance(x, Expr) else y for x, y in zip(self._constants, known, strict=True)]
+        *computed, may_begin = self._called("begin", *start, *known)
+        own = iter(computed)
+        given = [next(own) if isinstance(x, Expr) else y for x, y in zip(self._constants, known, strict=True)]
+        return given, bool(may_begin)
 
     def _record(self, row: dict[str, float], values: Numbers) -> None:
         """Take over the largest and the summed numbers of a step."""
