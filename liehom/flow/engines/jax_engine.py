@@ -12,8 +12,7 @@ import numpy as np
 from numpy.typing import DTypeLike
 
 from liehom.base.errors import InputError, TraceError
-from liehom.base.pytrees import Leaf, PerTrajectory, leaves, mapped, unwrapped
-from liehom.base.typing import Pytree
+from liehom.base.pytrees import PerTrajectory, leaves, unwrapped
 from liehom.flow.action.field import GeneratorField
 from liehom.flow.action.fingerprint import Watch, parts_of
 from liehom.flow.action.space import tight_frame
@@ -67,11 +66,13 @@ def step_for(problem: Problem, dimension: int, known: dict[Hashable, StepOnJax])
     points = np.asarray(start, dtype=np.float64).reshape(-1, n)
     tight = tight_frame(action, points, dimension) if step.uses_isotropy else None
     form = None if args is None else (lead, args_form(args, lead))
+    # numpy zeros in place of numbers, which JAX may trace
+    blank = jax.tree.map(lambda x: np.zeros(np.shape(x), getattr(x, "dtype", np.dtype(type(x)))), args)
     key = dimension, form, None if tight is None else repr([np.asarray(x).tolist() for x in tight[:4]])
     if key not in known:
         try:
             graph = traced_step(
-                action, problem.field, step, points, dimension, nominal=o.nominal, args=_blank(args), lead=lead,
+                action, problem.field, step, points, dimension, nominal=o.nominal, args=blank, lead=lead,
                 branching=False,
             )  # fmt: skip
             known[key] = GraphStep(graph) if _is_short(graph) or isinstance(step, Conserving) else array
@@ -83,17 +84,6 @@ def step_for(problem: Problem, dimension: int, known: dict[Hashable, StepOnJax])
 def _closes_over_jax(source: object) -> bool:
     """Whether a function uses JAX arrays of its surroundings; a graph would have their numbers in its operations."""
     return any(is_jax(x) for part in parts_of(source) for x in jax.tree.leaves(part))
-
-
-def _blank(args: Pytree) -> Pytree:
-    """args with numpy zeros in place of numbers, which JAX may trace."""
-
-    def zeros(leaf: Leaf) -> object:
-        inner: Any = leaf.value.value if isinstance(leaf.value, PerTrajectory) else leaf.value
-        blank = np.zeros(np.shape(inner), getattr(inner, "dtype", np.dtype(type(inner))))
-        return PerTrajectory(blank) if isinstance(leaf.value, PerTrajectory) else blank
-
-    return mapped(args, zeros)
 
 
 def _is_short(graph: StepGraph) -> bool:

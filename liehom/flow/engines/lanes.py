@@ -8,6 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from functools import reduce
 from itertools import pairwise
+from operator import and_
 from typing import Any, NamedTuple, TypeVar, final
 
 import numpy as np
@@ -91,7 +92,10 @@ def _has_rank(action: Action, m: Lanes, size: Lanes, dimension: int) -> tuple[La
     small = certain
     for _ in range(GUARD_PROJECTIONS):
         lengths = _orthogonal_lengths(frame @ rng.normal(size=(action.dimension, dimension + low)))
-        certain = certain | _are_certain(lengths[:dimension], size)
+        total = sum(lengths[:dimension])
+        certain = certain | reduce(
+            and_, [x > GUARD_RTOL * total for x in lengths[:dimension]], total > GUARD_RTOL * size
+        )
         if low:
             *longer, defect = lengths
             round_off, total = GUARD_DEFECT**2 * size, sum(longer)
@@ -108,15 +112,6 @@ def _orthogonal_lengths(matrix: Values) -> list[Any]:
         lengths.append((first * first).sum())
         columns = [c - first * ((first * c).sum() / lengths[-1]) for c in columns]
     return lengths
-
-
-def _are_certain(lengths: Sequence[Any], scale: Values) -> Values:
-    """Whether squared lengths of vectors of entries ~ scale are certainly not 0."""
-    total: Any = sum(lengths)
-    certain = total > GUARD_RTOL * scale
-    for x in lengths:
-        certain = certain & (x > GUARD_RTOL * total)
-    return certain
 
 
 # The lanes of a kernel: their state as rows, and what becomes of them in the state of a run.
@@ -289,16 +284,12 @@ class HandBack:
         """Append the steps of all lanes to the path of the run."""
         run, shape = self.run, self.run.shape
         most = max(len(path[0]) for _, path in self.paths)
-        if len(self.paths) == 1 and len(self.paths[0][0]) == len(self.t):
-            times, points, sizes = self.paths[0][1]
-            points = np.swapaxes(points, 1, 2)
-        else:
-            times, sizes = np.zeros((most, len(self.t))), np.zeros((most, len(self.t)))
-            points = np.zeros((most, len(self.t), self.size))
-            for lanes, path in self.paths:
-                count = len(path[0])
-                times[:count, lanes], sizes[:count, lanes] = path[0], path[2]
-                points[:count, lanes] = np.swapaxes(path[1], 1, 2)
+        times, sizes = np.zeros((2, most, len(self.t)))
+        points = np.zeros((most, len(self.t), self.size))
+        for lanes, path in self.paths:
+            count = len(path[0])
+            times[:count, lanes], sizes[:count, lanes] = path[0], path[2]
+            points[:count, lanes] = np.swapaxes(path[1], 1, 2)
         if most:
             run.state.path.extend(
                 times.reshape(most, *shape), points.reshape(most, *run.start.shape), sizes.reshape(most, *shape),

@@ -124,7 +124,13 @@ class Sensitivity:
         by_parameter = np.zeros((len(parts[0][1]) if parts else 0, flat.shape[1]))
         for group, part in zip(self._groups, parts, strict=True):
             y0[group.lanes], by_parameter[:, group.lanes] = part
-        return Gradient(y0.reshape(*self._shape, self._size), self._gradient(by_parameter))
+
+        def of_leaf(leaf: Leaf, shape: tuple[int, ...], part: slice) -> Array:
+            if isinstance(leaf.value, PerTrajectory):
+                return np.moveaxis(by_parameter[part], 0, -1).reshape(*self._shape, *shape)
+            return by_parameter[part].sum(axis=1).reshape(shape)
+
+        return Gradient(y0.reshape(*self._shape, self._size), self._by_leaf(of_leaf))
 
     # -- private -----------------------------------------------------------------------------------------
     @cached_property
@@ -144,27 +150,13 @@ class Sensitivity:
 
         def of_leaf(leaf: Leaf) -> Array:
             nonlocal first
-            shape = self._slice(leaf)
+            value: Any = leaf.value
+            shape = value.value.shape[len(self._shape) :] if isinstance(value, PerTrajectory) else np.shape(value)
             part = slice(first, first + int(np.prod(shape, dtype=int)))
             first = part.stop
             return made(leaf, shape, part)
 
         return mapped(self._problem.args, of_leaf)
-
-    def _gradient(self, by_parameter: Array) -> Pytree:
-        """args with the derivatives of a number, from those by each number of each trajectory, (P, L)."""
-
-        def of_leaf(leaf: Leaf, shape: tuple[int, ...], part: slice) -> Array:
-            if isinstance(leaf.value, PerTrajectory):
-                return np.moveaxis(by_parameter[part], 0, -1).reshape(*self._shape, *shape)
-            return by_parameter[part].sum(axis=1).reshape(shape)
-
-        return self._by_leaf(of_leaf)
-
-    def _slice(self, leaf: Leaf) -> tuple[int, ...]:
-        """The shape of a leaf, or of its slice for one trajectory."""
-        value = leaf.value
-        return value.value.shape[len(self._shape) :] if isinstance(value, PerTrajectory) else tuple(np.shape(value))
 
 
 @final

@@ -197,7 +197,8 @@ def _traced(
     clock: tuple[tuple[int, Expr], ...] = ()
     if own_clock:
         clock = tuple((k, _number(tape, c)) for k, c in local.clock)  # coefficients of h^k in τ(h), k > 1
-        runs = _clock_is_admissible(tape, local.clock, h)
+        change = sum(k * abs(c) * abs(h) ** (k - 1) for k, c in sorted(local.clock, key=lambda term: term[0]))
+        runs = _number(tape, change < MAX_CLOCK_DEVIATION)
         if limits is not None:  # adaptive steps are larger than fixed ones: the sharper test of a run
             runs = _number(tape, clock_at(local, h)[0])
     sizes = None
@@ -264,15 +265,6 @@ def _counted(tape: Tape, field: GeneratorField) -> GeneratorField:
 def _number(tape: Tape, x: object) -> Operand:
     """A number, or a tracer of shape (), as an expression on the tape; None stays None."""
     return None if x is None else Traced(tape, x).entry
-
-
-def _clock_is_admissible(tape: Tape, clock: Sequence[tuple[int, Any]], h: Values) -> Expr:
-    """Whether |τ' - 1| is small over the step, by the sizes of the coefficients."""
-    size: Any = abs(h)
-    total: Any = 0.0
-    for k, c in sorted(clock, key=lambda term: term[0]):
-        total = total + k * abs(c) * size ** (k - 1)
-    return _number(tape, total < MAX_CLOCK_DEVIATION)
 
 
 def _statistics(

@@ -46,7 +46,10 @@ def _host() -> tuple[ModuleType, str, dict[str, bool]]:
         raise TraceError('engine="llvm" needs llvmlite: pip install llvmlite') from None
     llvm.initialize_native_target()
     llvm.initialize_native_asmprinter()
-    _add_symbols(llvm)
+    # where the functions of the C library are; on Windows they are in its universal runtime
+    library = ctypes.CDLL("ucrtbase" if sys.platform == "win32" else None)
+    for symbol in sorted({*LIBM.values(), "memset", "memcpy", "malloc", "free"}):
+        llvm.add_symbol(symbol, ctypes.cast(getattr(library, symbol), ctypes.c_void_p).value)
     name, features = llvm.get_host_cpu_name(), llvm.get_host_cpu_features()
     triple = llvm.get_process_triple()
     return llvm, f"{llvmlite.__version__}{llvm.llvm_version_info}{name}{features.flatten()}{triple}", dict(features)
@@ -83,13 +86,6 @@ def _compiled(llvm: ModuleType, machine: Engine, text: str) -> bytes:
     builder = llvm.create_pass_builder(machine, options)
     builder.getModulePassManager().run(module, builder)
     return bytes(machine.emit_object(module))
-
-
-def _add_symbols(llvm: ModuleType) -> None:
-    """Tell LLVM where the functions of the C library are; on Windows they are in its universal runtime."""
-    library = ctypes.CDLL("ucrtbase" if sys.platform == "win32" else None)
-    for name in sorted({*LIBM.values(), "memset", "memcpy", "malloc", "free"}):
-        llvm.add_symbol(name, ctypes.cast(getattr(library, name), ctypes.c_void_p).value)
 
 
 def _private_cache() -> Path | None:
