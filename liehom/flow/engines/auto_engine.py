@@ -38,9 +38,7 @@ FEW = 8  # trajectories, at most, that Python makes faster than numpy, one after
 NUMPY_STEPS = 32, 0.5  # of numpy before a step is traced
 MANY_NUMPY_STEPS = 64, 4.0  # the same for more than FEW trajectories, which only machine code makes faster
 NUMBERS_OF_A_STEP = 2000  # coordinates of all points that cost numpy as much as a step does by itself
-CALLS_OF_A_STEP = (
-    3  # of psi, in units of the order; with more of them, as those of implicit methods, a step counts more
-)
+CALLS_OF_A_STEP = 4, 2  # of psi, and for each order; with more of them, as for implicit methods, a step counts more
 FIRST_STEPS = 8  # of adaptive sizes, after which their number to the end is estimated
 FORESIGHT = 10  # of adaptive sizes, which may grow, the largest estimate in units of the steps made
 PYTHON_STEPS = 2000, 10.0  # of trajectories in Python before machine code is made
@@ -170,7 +168,8 @@ class _Ladder:
 def _counted(run: Run, steps: float) -> dict[str, float]:
     """A number of steps of a run: those of numpy by what they cost, those of Python for all trajectories."""
     calls = run.state.calls / max(1, int(np.max(run.state.taken)))
-    cost = max(1.0, calls / (CALLS_OF_A_STEP * run.step.order)) * (1 + run.start.size / NUMBERS_OF_A_STEP)
+    usual = CALLS_OF_A_STEP[0] + CALLS_OF_A_STEP[1] * run.step.order
+    cost = max(1.0, calls / usual) * (1 + run.start.size / NUMBERS_OF_A_STEP)
     return {"numpy": steps * cost, "python": steps * run.start.size / run.start.shape[-1]}
 
 

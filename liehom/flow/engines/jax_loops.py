@@ -115,7 +115,7 @@ class JaxKernel(Kernel):
         graph, n, sizes, time, h = self.graph, self.graph.size, self.graph.sizes, s["t"], s["h"]
         stop_time = stops[s["stop"].astype(int)]
         inputs = {**{i: s[f"x{i}"] for i in range(n)}, n: time, n + 1: h, n + 2: stop_time}
-        numbers = [f"e{i}" for i in range(len(graph.largest) + len(graph.summed))]
+        numbers = list(graph.recorded)
         wanted = dict(zip(self.names, graph.point, strict=False))
         wanted |= dict(zip(numbers, (*graph.largest.values(), *graph.summed.values()), strict=True))
         more = {"elapsed": graph.elapsed, "ordinary": graph.ordinary, "tried": graph.tried, "reached": graph.reached}

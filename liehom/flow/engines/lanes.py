@@ -299,27 +299,19 @@ class HandBack:
 
 def records_of(kernel: Kernel, row: dict[str, Array]) -> dict[str, tuple[Array, str]]:
     """The totals of the steps but the calls of psi, by name, with their kinds."""
-    graph = kernel.graph
-    kinds = ["max"] * len(graph.largest) + ["sum"] * len(graph.summed)
-    rows = zip((*graph.largest, *graph.summed), [row[e] for e in _recorded(graph)], kinds, strict=True)
-    kept = [(name, x, kind) for name, x, kind in rows if name != "calls"]
-    return {name.removeprefix("-"): (-x, "min") if name[0] == "-" else (x, kind) for name, x, kind in kept}
-
-
-def _recorded(graph: StepGraph) -> list[str]:
-    """Names of the rows of the largest and the summed numbers."""
-    return [f"e{i}" for i in range(len(graph.largest) + len(graph.summed))]
+    rows = [(name, row[e], kind) for e, (name, kind) in kernel.graph.recorded.items() if name != "calls"]
+    return {name.removeprefix("-"): (-x, "min") if name[0] == "-" else (x, kind) for name, x, kind in rows}
 
 
 def lowest_numbers(graph: StepGraph) -> dict[str, float]:
     """Initial values of the rows of the largest numbers."""
-    return dict.fromkeys(_recorded(graph)[: len(graph.largest)], -np.inf)
+    return {e: -np.inf for e, (_, kind) in graph.recorded.items() if kind == "max"}
 
 
 def calls_of(kernel: Kernel, row: dict[str, Array], steps: npt.NDArray[Any]) -> Array:
     """Calls of psi in a given number of steps of each lane."""
-    graph, sums = kernel.graph, kernel.graph.summed
-    rows = {name: row[f"e{i}"] for i, name in enumerate(sums, len(graph.largest)) if name in ("calls", "looks")}
+    graph = kernel.graph
+    rows = {name: row[e] for e, (name, _) in graph.recorded.items()}
     made = rows["calls"] if graph.calls is None else np.multiply(steps, graph.calls, dtype=np.float64)
     return np.asarray(made + rows.get("looks", 0.0))
 

@@ -222,9 +222,8 @@ class Plan:
         self.axes = (*range(1, len(shape)), 0, len(shape))  # which take a path (N, ..., j + 1) to (..., N, j + 1)
         self.lockstep, self.place = graph.reached is None, {name: i for i, name in enumerate(kernel.names)}
         self.alive, self.taken, self.time, self.size = (self.place.get(x, 0) for x in ("alive", "count", "t", "h"))
-        recorded = {f"e{i}": name for i, name in enumerate([*graph.largest, *graph.summed])}
-        self.trouble = [self.place[e] for e, name in recorded.items() if name in TROUBLE]
-        self.kept = [x for x in kernel.names if self.lanes == 1 or x in recorded or x in ("count", "tries")]
+        self.trouble = [self.place[e] for e, (name, _) in graph.recorded.items() if name in TROUBLE]
+        self.kept = [x for x in kernel.names if self.lanes == 1 or x in graph.recorded or x in ("count", "tries")]
         self.kept_rows = [self.place[name] for name in self.kept]
         self.ranked = ranked(self.lanes) if step.uses_isotropy else None
         wanted = [*kernel.run_constants, "checks", "checks"]  # of one name itemgetter would make no tuple

@@ -37,6 +37,7 @@ from liehom.flow.run.options import (
     among,
     overall_status,
     points_of,
+    span_of,
 )
 from liehom.flow.run.records import ConservationReport, Report
 from liehom.flow.run.solution import Solution, as_arrays, from_arrays, warn_of_failure
@@ -170,13 +171,9 @@ class EnsembleProblem(NamedTuple):
             options = {**options, "args": inner}
         return self._replace(start=self.start[here], options=options)
 
-    def ends(self) -> tuple[float, float]:
-        """Initial and final time as floats; (0, 0) if they are not numbers, which `integrate` rejects."""
-        try:
-            first, last = (float(t) for t in self.t_span)
-        except (TypeError, ValueError):
-            first = last = 0.0
-        return first, last
+    def ends(self) -> Span:
+        """Initial and final time."""
+        return span_of(self.t_span, np.dtype(np.float64))
 
     def made(self) -> GeneratorField:
         """The field of these trajectories, with its args if they are given."""
@@ -399,7 +396,7 @@ def ensemble_parts(
     problem = EnsembleProblem(field, t_span, start, dict(_with_step(options)))
     bounds = _bounds(len(start), int(chunk))
     one_field = problem.check(bounds)
-    if options.get("step") is None and not has_series(one_field, start, problem.ends()[0]):
+    if options.get("step") is None and not has_series(one_field, start, float(problem.ends()[0])):
         problem.options["step"] = as_step("dop853")
     kept = None if store is None else open_store(store, problem.fingerprint(one_field, bounds))
     # chunks in flight, whose initial points take some 100 MB

@@ -136,6 +136,12 @@ class StepGraph:
         return [number(points) for number in self.constant_functions]
 
     @property
+    def recorded(self) -> dict[str, tuple[str, str]]:
+        """(name, "max" or "sum") of the recorded numbers, by their names in the state of a lane."""
+        rows = [*[(name, "max") for name in self.largest], *[(name, "sum") for name in self.summed]]
+        return {f"e{i}": row for i, row in enumerate(rows)}
+
+    @property
     def outputs(self) -> list[Expr]:
         """All outputs: point, time, booleans, step sizes, recorded numbers, and last those of stops."""
         sizes = self.sizes

@@ -51,7 +51,7 @@ def state_names(graph: StepGraph) -> list[str]:
         names += ["t", "stop", "h"]
     if graph.sizes is not None:
         names += ["tries", "kept"]
-    return names + [f"e{i}" for i in range(len(graph.largest) + len(graph.summed))]
+    return [*names, *graph.recorded]
 
 
 def run_module(graph: StepGraph, constants: Sequence[Constant], width: int) -> str:

@@ -185,6 +185,11 @@ def test_many_trajectories_go_to_machine_code_at_once() -> None:
     assert np.abs(sol.y - plain.y).max() < 1e-12
 
 
+@pytest.mark.parametrize(("step", "name"), [("rk4", "numpy"), (lh.RKMK("gauss2"), "numpy, llvm")], ids=repr)
+def test_steps_that_iterate_count_by_their_calls_of_psi(step: Any, name: str) -> None:
+    assert lh.integrate(BODY, (0, 6), sphere(FEW + 1), step=step, dt=0.1).report.engine == name
+
+
 class Halves(OneExponential):
     """A step that a user has written."""
 
