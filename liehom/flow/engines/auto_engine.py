@@ -99,7 +99,7 @@ class AutoEngine:
         return not self.refused >= self.stores.keys()
 
     def kind(self, start: Values, ahead: Mapping[str, float] = NONE) -> type[Kernel] | None:
-        """The kind of code for initial points (..., N), with so many steps ahead, as `made`; None for numpy."""
+        """The kind of code for initial points (..., N), from the steps made and those ahead; None for numpy."""
         *lead, n = np.shape(start)
         few, size = int(np.prod(lead, dtype=int)) <= FEW and PythonKernel not in self.refused, n * self._generators
 

@@ -140,4 +140,4 @@ def integrate(
     """
     propagator = Propagator(field, step, args=args, exponential=exponential, clock=clock, engine=engine)
     problem = propagator.problem(t_span, y0, **options)
-    return warned(propagator.solve(problem), problem, stacklevel=3)
+    return warned(propagator.solve(problem), problem)

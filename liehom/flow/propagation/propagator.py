@@ -242,7 +242,7 @@ class Propagator:
         solution = None if again is None else again(t_span, y0, options, args)
         if solution is None:
             problem = self.problem(t_span, y0, args=args, **options)
-            return warned(self.solve(problem), problem, stacklevel=3)
+            return warned(self.solve(problem), problem)
         return solution
 
     def solve(self, problem: Problem) -> Solution:
@@ -291,7 +291,7 @@ class Propagator:
         problem = self.problem(t_span, y0, args=args, **options)
         if has_fixed_points(problem):
             raise InputError("the group fixes an initial point, so that its trajectory is constant: leave it out")
-        return Sensitivity(problem, warned(self.solve(problem), problem, stacklevel=3))
+        return Sensitivity(problem, warned(self.solve(problem), problem))
 
     def _choice(self, dt: npt.ArrayLike | None, rtol: float, atol: npt.ArrayLike) -> tuple[Step, Engine]:
         """The step of a call with these options, and its engine."""
@@ -423,10 +423,10 @@ def without_order_warning() -> Iterator[None]:
         WARNS.reset(token)
 
 
-def warned(solution: Solution, problem: Problem | None = None, *, stacklevel: int) -> Solution:
+def warned(solution: Solution, p: Problem) -> Solution:
     """The solution, after a warning if `success` is False, and a `StiffnessWarning` if it was slow."""
-    if WARNS.get():
-        warn_of_failure(solution, stacklevel)
-        if (p := problem) is not None and p.options.dt is None and type(solution.y) is np.ndarray:
-            warn_of_stiffness(p.action, p.bound, p.step, p.orbit_dimension, p.span, solution, stacklevel)
+    if WARNS.get():  # at the line that calls the caller
+        warn_of_failure(solution, stacklevel=3)
+        if p.options.dt is None and type(solution.y) is np.ndarray:
+            warn_of_stiffness(p.action, p.bound, p.step, p.orbit_dimension, p.span, solution, stacklevel=3)
     return solution
