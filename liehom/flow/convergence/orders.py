@@ -287,7 +287,7 @@ def observed_order(
     (True, True)
     """
     step, start = as_step(step), points_of(y0)
-    sizes = _sizes(dts)
+    sizes = decreasing("dts", dts, "two or more different positive step sizes", 2)
     first, last = span_of(t_span, start.dtype)
     if sizes[0] > abs(last - first):
         raise InputError(f"the step size {sizes[0]} is longer than t_span = {t_span!r}: it would be shortened")
@@ -321,12 +321,12 @@ def observed_order(
     )
 
 
-def _sizes(dts: Iterable[float]) -> tuple[float, ...]:
-    """Different step sizes in decreasing order, at least two."""
+def decreasing(name: str, values: Iterable[float], expected: str, least: int = 0) -> tuple[float, ...]:
+    """Different positive numbers in decreasing order, at least so many."""
     try:
-        sizes = sorted({float(h) for h in dts}, reverse=True)
+        numbers = sorted({float(x) for x in values}, reverse=True)
     except (TypeError, ValueError):
-        sizes = []
-    if len(sizes) < 2 or not all(0 < h < math.inf for h in sizes):
-        raise InputError(f"dts is {dts!r}, expected two or more different positive step sizes, e.g. [0.1, 0.05]")
-    return tuple(sizes)
+        numbers = [NAN]
+    if len(numbers) < least or not all(0 < x < math.inf for x in numbers):
+        raise InputError(f"{name} is {values!r}, expected {expected}, e.g. [0.1, 0.05]")
+    return tuple(numbers)
