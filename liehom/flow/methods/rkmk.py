@@ -162,12 +162,10 @@ def estimate_order(tableau: Tableau) -> int:
 
 @final
 class Stages:
-    """Stages k_i of a method at one point, on demand for the last h; if `hasty`, equations are given up early."""
+    """Stages k_i of a method at one point, on demand for the last h."""
 
-    def __init__(
-        self, method: RKMK, action: Action, psi: Generator, m: Values, t: Values, *, hasty: bool = False
-    ) -> None:
-        self.method, self.action, self.psi, self.m, self.t, self.hasty = method, action, psi, m, t, hasty
+    def __init__(self, method: RKMK, action: Action, psi: Generator, m: Values, t: Values) -> None:
+        self.method, self.action, self.psi, self.m, self.t = method, action, psi, m, t
         self.numbers: Coefficients = method.coefficients(m)
         # a row without entries beyond its diagonal needs no later stage
         self._sequential = all(j <= i for i, row in enumerate(self.numbers.a) for j, _ in row)
@@ -200,7 +198,7 @@ class Stages:
         def stage(k: Values) -> Values:
             return self._stage(i, k * diagonal if before is None else before + k * diagonal, h)
 
-        return solve_implicitly(stage, zeros(self.m, self._shape), h, reach=reach_of(self.action), hasty=self.hasty)
+        return solve_implicitly(stage, zeros(self.m, self._shape), h, reach=reach_of(self.action))
 
     def _solved(self, h: Values) -> list[Values]:
         """All stages of an implicit method, from one equation for an array with a first axis for the stages."""
@@ -209,7 +207,7 @@ class Stages:
         def stages(u: list[Any]) -> list[Values]:
             return [self._stage(i, x, h) for i, x in enumerate(u)]
 
-        k = solve_implicitly(stages, start, h, rows=rows, reach=reach_of(self.action), hasty=self.hasty)
+        k = solve_implicitly(stages, start, h, rows=rows, reach=reach_of(self.action))
         return [k[i] for i in range(len(rows))]
 
     def _stage(self, i: int, u: Values | None, h: Values) -> Values:

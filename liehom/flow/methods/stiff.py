@@ -138,7 +138,7 @@ class StiffRKMK(OneExponential):
         return self.tableau.order
 
     def at(self, action: Action, psi: Generator, m: Values, t: Values, *, error_terms: int = 0) -> LocalStep:
-        stages = Stages(self._base, action, psi, m, t, hasty=error_terms > 0)  # sizes are adaptive
+        stages = Stages(self._base, action, psi, m, t)
         few = len(self.tableau.b) * action.dimension <= MAX_TRACED and not psi.field.sites
         polynomial = self._polynomial if error_terms and few else None  # type: ignore[attr-defined]
         return StiffStep(stages, polynomial, *self._estimate)  # type: ignore[attr-defined]

@@ -194,7 +194,6 @@ def _least_squares(columns: list[list[Array]], size: Array) -> tuple[list[Array]
 # solutions of x = s F(A x) are then followed from s = 0 to 1, and the last one is that of the step.
 
 MAX_NEWTON_ITERATIONS = 60
-HASTY_ITERATIONS = 20  # iterations of a step that is cheaper to repeat with half its size
 MAX_DENSE = 48  # largest number of unknowns of one trajectory for elimination
 REFRESH = 0.03  # the derivative is evaluated again if the residual is multiplied by more than this
 FIRST_PART, MAX_PARTS = 1e-8, 400  # the first part of h on the way from 0, and the largest number of parts
@@ -206,16 +205,16 @@ CRAWLS = 1e-3
 
 
 def newton(
-    equation: Equation, start: Array, wanted: BooleanArray, reach: float, *, joint: bool = False, hasty: bool = False
+    equation: Equation, start: Array, wanted: BooleanArray, reach: float, *, joint: bool = False
 ) -> tuple[Array, BooleanArray, Array]:
     """The x, which of them are solutions to round-off, and the last changes, for the trajectories `wanted`."""
-    x, solved, change, repels = _newton_iterated(equation, start, wanted, reach, joint, guided=True, hasty=hasty)
-    if not hasty and bool((wanted & ~solved).any()):
+    x, solved, change, repels = _newton_iterated(equation, start, wanted, reach, joint, guided=True)
+    if bool((wanted & ~solved).any()):
         again, more, last, others = _newton_iterated(equation, start, wanted & ~solved, reach, joint, guided=False)
         x, solved, repels = np.where(more, again, x), solved | more, np.where(more, others, repels)
         change = np.where(more, 0.0, last)
     if bool((astray := wanted & solved & repels).any()):
-        followed, more = (x, ~wanted) if hasty else _followed(equation, x, astray, reach, joint)
+        followed, more = _followed(equation, x, astray, reach, joint)
         x, solved = np.where(more, followed, x), (solved & ~astray) | more
     return x, solved, change
 
@@ -244,7 +243,7 @@ def _followed(
 
 
 def _newton_iterated(
-    equation: Equation, x: Array, wanted: BooleanArray, reach: float, joint: bool, *, guided: bool, hasty: bool = False
+    equation: Equation, x: Array, wanted: BooleanArray, reach: float, joint: bool, *, guided: bool
 ) -> tuple[Array, BooleanArray, Array, BooleanArray]:
     axes = tuple(range(x.ndim)) if joint else (0, -1)
     system = _System(equation, x, axes, wanted)
@@ -254,7 +253,7 @@ def _newton_iterated(
     active, solved = wanted, np.zeros_like(wanted)
     stale, damping = wanted, np.zeros(np.shape(wanted), dtype=x.dtype)
     change, free = before, np.full(np.shape(wanted), not guided)
-    for _ in range(HASTY_ITERATIONS if hasty else MAX_NEWTON_ITERATIONS):
+    for _ in range(MAX_NEWTON_ITERATIONS):
         system.refresh(x, stale)
         step = system.solve(residual, damping)
         if not free.all():
@@ -487,7 +486,6 @@ def solve_implicitly(
     *,
     rows: Sequence[SparseRow] | None = None,
     reach: float = 1.0,
-    hasty: bool = False,
 ) -> Values:
     """Solution x of x = function(x), where function has a factor h.
 
@@ -506,8 +504,6 @@ def solve_implicitly(
         depends on y_i only.
     reach : float
         The largest norm of a step of Newton's method.
-    hasty : bool
-        Whether to give up after few iterations, if a smaller step is tried then. Arrays only.
 
     Raises
     ------
@@ -545,7 +541,7 @@ def solve_implicitly(
     elif is_jax(start):
         x = solved_by_jax(equation, start, reach)
     else:
-        x = _solved(equation, np.asarray(start), reach, hasty)
+        x = _solved(equation, np.asarray(start), reach)
     return x if rows is not None else x[0][..., 0] if number else x[0]
 
 
@@ -562,13 +558,13 @@ def _solved_on_jets(function: Callable[[Any], Any], start: Values, order: int, r
     return x
 
 
-def _solved(equation: Equation, start: Array, reach: float, hasty: bool) -> Array:
+def _solved(equation: Equation, start: Array, reach: float) -> Array:
     """Solution (S, ..., n), by the fixed point iteration if that is fast, else by Newton's method."""
     with np.errstate(over="ignore", invalid="ignore"):  # divergence is reported below
         x, settled, change = _iterated(equation, start)
         if settled.all():
             return x
-        x, solved, change = newton(equation, np.where(settled, x, start), ~settled, reach, hasty=hasty)
+        x, solved, change = newton(equation, np.where(settled, x, start), ~settled, reach)
         solved = solved | settled
         if x.ndim > 2 and not (solved.all() and _is_solution(equation, x)) and _couples(equation, start):
             x, solved, change = newton(equation, start, np.ones((1,) * x.ndim, dtype=bool), reach, joint=True)
