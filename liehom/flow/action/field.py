@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
-from copy import copy
 from operator import matmul
 from typing import Any, TypeAlias, final, overload
 
@@ -37,21 +36,15 @@ TANGENCY_RTOL = 1e-8
 
 
 @final
-class LeastNorm:
+class LeastNorm(Components):
     """The function (m, t) -> generator of minimal norm of a vector field."""
-
-    components: Components
-    time_dependent: bool
-
-    __slots__ = ("_action", "_basis", "_dimension", "_rtol", "_size", "components", "time_dependent")
 
     def __init__(
         self, representation: Representation, field: GeneratorLike, orbit_dimension: int | None = None,
         rtol: float = TANGENCY_RTOL, time_dependent: bool | None = None,
     ) -> None:  # fmt: skip
         size = representation.size
-        self.components = Components(field, size, (size,), "the vector field", time_dependent)
-        self.time_dependent = self.components.time_dependent
+        super().__init__(field, size, (size,), "the vector field", time_dependent)
         self._action = action_map(representation)
         self._basis = inner_product(representation).orthonormal_basis()
         most = min(size, representation.algebra.dimension)
@@ -61,11 +54,11 @@ class LeastNorm:
             raise InputError(f"rtol is {rtol!r}, expected a positive number")
         self._dimension, self._rtol = orbit_dimension, rtol
         flat = matrices_of(representation).reshape(len(self._basis), size * size)
-        self._size = float(np.linalg.norm(self._basis.T @ flat, axis=-1).max(initial=0.0))
+        self._largest = float(np.linalg.norm(self._basis.T @ flat, axis=-1).max(initial=0.0))
 
     def __call__(self, m: ValuesLike, t: Real = 0.0) -> Values:
         """The generator at m (..., N) and t: array or Jet of shape (..., dim g)."""
-        x = self.components(m, t)
+        x = self.value(m, t)
         value: Values = m.value if isinstance(m, Jet) else namespace(m).asarray(m)
         if is_exact(value):
             raise InputError("the generator of minimal norm is computed in floats; give psi itself for exact numbers")
@@ -99,25 +92,9 @@ class LeastNorm:
         y = recurrences.solution(recurrences.linear(image, [field]), gram, matmul, lambda a, _: first @ a)
         return Jet.from_node(recurrences.multilinear(lifted, [along, y]))
 
-    @property
-    def takes_args(self) -> bool:
-        """Whether the vector field is a function with args."""
-        return self.components.takes_args
-
-    @property
-    def bound(self) -> tuple[Pytree, ...]:
-        """(args,) that the vector field is called with, or ()."""
-        return self.components.bound
-
-    def with_args(self, args: Pytree) -> LeastNorm:
-        """A LeastNorm for the vector field with these args."""
-        other = copy(self)
-        other.components = self.components.with_args(args)
-        return other
-
     def check(self, m: ValuesLike, t: Real = 0.0) -> None:
         """Check that X is finite at initial points and tangent to their orbits."""
-        self.components.check(m, t)
+        super().check(m, t)
         self(m, t)
 
     def _columns(self, m: Values) -> Values:
@@ -134,7 +111,7 @@ class LeastNorm:
             at, field = at.astype(np.float64), field.astype(np.float64)
         left, sizes, right = xp.linalg.svd(at, full_matrices=False)
         if self._dimension is None:
-            noise = NOISE_RTOL * self._size * _length(value)[..., None]
+            noise = NOISE_RTOL * self._largest * _length(value)[..., None]
             kept = sizes > xp.maximum(RANK_RTOL * sizes[..., :1], noise)
         else:
             kept = (np.arange(sizes.shape[-1]) < self._dimension) & (sizes > 0)
@@ -206,21 +183,21 @@ class GeneratorField(Immutable):
     """
 
     representation: Representation
-    source: GeneratorLike | LeastNorm | Components
+    source: GeneratorLike | Components
 
     __slots__ = ("_action", "_components", "_dimension", "_sites", "representation", "source", "time_dependent")
 
     def __init__(
-        self, representation: Representation, psi: GeneratorLike | LeastNorm | Components, *,
+        self, representation: Representation, psi: GeneratorLike | Components, *,
         time_dependent: bool | None = None, sites: tuple[int, ...] = (),
     ) -> None:  # fmt: skip
         if not isinstance(representation, Representation):
             raise InputError(f"expected a Representation, got {displayed(representation)}")
         self.representation, self.source = representation, psi
         self._action, self._dimension = action_map(representation), representation.algebra.dimension
-        self._components: Components | LeastNorm = (
+        self._components: Components = (
             psi
-            if isinstance(psi, LeastNorm | Components)
+            if isinstance(psi, Components)
             else Components(psi, representation.size, (representation.given, self._dimension), "psi", time_dependent)
         )
         self.time_dependent: bool = self._components.time_dependent
