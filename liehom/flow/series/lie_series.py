@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Hashable, Iterable, Sequence
 from fractions import Fraction
 from math import factorial
-from typing import Any, TypeAlias, final
+from typing import Any, TypeAlias
 
 import flint
 import numpy as np
@@ -27,7 +27,6 @@ DENSE_FROM_FRACTION = 0.2
 entries is not 0."""
 
 
-@final
 class Bilinear:
     """Bilinear map K^a x K^b -> K^c with constant coefficients.
 
@@ -73,13 +72,11 @@ class Bilinear:
 
     def __call__(self, x: NumbersLike, y: NumbersLike) -> Any:
         """B(x, y), array of shape (..., c), for x (..., a) and y (..., b); a Jet if x or y is one."""
-        a, b = (v if isinstance(v, Jet) else _values_of(v) for v in (x, y))
-        for v, length in zip((a, b), self.shape, strict=False):
-            if not v.shape or v.shape[-1] != length:
-                raise ShapeError(f"an argument of shape {v.shape}, expected (..., {length}) for a map of {self.shape}")
+        a, b = values_of(x), values_of(y)
+        self._check(a.shape, b.shape)
         if isinstance(a, Jet):
             if isinstance(b, Jet):
-                return Jet.from_node(recurrences.multilinear(self._apply, [a.node, b.node]))
+                return Jet.from_node(recurrences.bilinear(self._apply, a.node, b.node, self._zero(a.node, b.node)))
             right = owned(b)
             return Jet.from_node(recurrences.linear(lambda left: self._apply(left, right), [a.node]))
         if isinstance(b, Jet):
@@ -87,7 +84,21 @@ class Bilinear:
             return Jet.from_node(recurrences.linear(lambda right: self._apply(left, right), [b.node]))
         return self._apply(a, b)
 
-    def left(self, x: NumbersLike) -> npt.NDArray[Any]:
+    def _check(self, x: tuple[int, ...], y: tuple[int, ...]) -> None:
+        a, b, _ = self.shape
+        if not x or not y or x[-1] != a or y[-1] != b:
+            raise ShapeError(
+                f"arguments of shapes {x} and {y}, expected (..., {a}) and (..., {b}), components on the last axis"
+            )
+
+    def _zero(self, x: Node, y: Node) -> Values | None:
+        """Zeros of the shape of B(x, y) if x or y is 0 at 0 and both are numpy arrays of one dtype, else None."""
+        a, b = x.value, y.value
+        if (x.known[0] is None or y.known[0] is None) and type(a) is type(b) is np.ndarray and a.dtype == b.dtype:
+            return zeros(a, (*np.broadcast_shapes(a.shape[:-1], b.shape[:-1]), self.shape[2])) if a.size else None
+        return None
+
+    def left(self, x: NumbersLike) -> Values:
         """The matrix of y -> B(x, y), shape (..., c, b).
 
         Examples
@@ -97,12 +108,12 @@ class Bilinear:
         """
         return self._contracted("...i,ijk->...kj", x)
 
-    def right(self, y: NumbersLike) -> npt.NDArray[Any]:
+    def right(self, y: NumbersLike) -> Values:
         """The matrix of x -> B(x, y), shape (..., c, a)."""
         return self._contracted("...j,ijk->...ki", y)
 
     def _contracted(self, subscripts: str, x: NumbersLike) -> npt.NDArray[Any]:
-        factor = x if isinstance(x, Jet) else _values_of(x)
+        factor = values_of(x)
         xp, value = (np, factor.value) if isinstance(factor, Jet) else (namespace(factor), factor)
         tensor = self._cached("tensor", value, lambda: self._filled(self._coefficients(value)))
         return xp.einsum(subscripts, factor, tensor)
@@ -112,9 +123,9 @@ class Bilinear:
         np.add.at(out, (self._i, self._j, self._k), values)
         return out
 
-    def _apply(self, x: npt.NDArray[Any], y: npt.NDArray[Any]) -> npt.NDArray[Any]:
+    def _apply(self, x: Values, y: Any) -> Values:
         a, b, c = self.shape
-        kind = x if x.dtype == y.dtype else np.broadcast_to(np.zeros((), np.result_type(x.dtype, y.dtype)), (1,))
+        kind: Any = x if x.dtype == y.dtype else np.broadcast_to(np.zeros((), np.result_type(x.dtype, y.dtype)), (1,))
         if kind.dtype == object:
             kind = x if x.dtype == object else y
         elif self._dense:
@@ -123,7 +134,9 @@ class Bilinear:
                 pairs = x[..., :, None] * y[..., None, :]
                 xp, flat = namespace(pairs), pairs.reshape(*pairs.shape[:-2], a * b)
                 return flat @ (matrix if xp is np else xp.asarray(matrix))
-        products = x[..., self._i] * y[..., self._j] * self._cached("values", kind, lambda: self._coefficients(kind))
+        products: Any = (
+            x[..., self._i] * y[..., self._j] * self._cached("values", kind, lambda: self._coefficients(kind))
+        )
         return self._collected(products, kind)
 
     def _collected(self, products: npt.NDArray[Any], kind: npt.NDArray[Any]) -> npt.NDArray[Any]:
@@ -160,8 +173,9 @@ class Bilinear:
         return self._cache[key]
 
 
-def _values_of(x: NumbersLike) -> npt.NDArray[Any]:
-    return x if type(x) is np.ndarray and x.dtype.kind in "fcO" else as_values(x)
+def values_of(x: NumbersLike) -> Any:
+    """A Jet, or an array of floats or exact numbers."""
+    return x if isinstance(x, Jet) or (type(x) is np.ndarray and x.dtype.kind in "fcO") else as_values(x)
 
 
 # Series in Lie algebras: dexp and its inverse, Magnus, Baker-Campbell-Hausdorff, Cayley, to any order.
