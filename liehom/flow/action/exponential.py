@@ -34,7 +34,15 @@ from liehom.flow.door import Field, Matrix, Representation, Scalar, defining
 from liehom.flow.series import node as recurrences
 from liehom.flow.series.arrays import as_values, in_lanes, is_exact, is_jax, is_lazy, namespace
 from liehom.flow.series.jet import Jet
-from liehom.flow.series.lie_series import cayley_magnus, dcayley_inverse, dexp, dexp_inverse, magnus, without_constant
+from liehom.flow.series.lie_series import (
+    cayley_magnus,
+    cayley_moved,
+    dcayley_inverse,
+    dexp,
+    dexp_inverse,
+    magnus,
+    without_constant,
+)
 from liehom.flow.series.node import Node
 from liehom.flow.tracing.array import Traced, entire_function, exponential_action
 
@@ -537,7 +545,8 @@ class Cayley(Exponential):
         x = without_constant(x, check=True)
         if self._through is not None:
             return self._through.series(self._logarithmic_jet(x), m)
-        return _rational_series(self._matrices, x, m)
+        shape = (*np.broadcast_shapes(x.shape[:-1], m.shape[:-1]), m.shape[-1])
+        return cayley_moved(self._matrices, x, m if m.shape == shape else np.broadcast_to(m, shape))
 
     def differential_inverse(self, x: Values, y: Values, terms: int) -> Values:
         """The value dcay^-1_x y = (1 - x/2) y (1 + x/2), exact."""
@@ -575,18 +584,6 @@ def _cayley_increment(matrix: Values, m: Values) -> Values:
         increment = solve(identity(wide) - wide / 2, wide @ m[..., None].astype(np.longdouble))
         return increment[..., 0].astype(right.dtype)
     return solve(identity(matrix) - matrix / 2, right)[..., 0]
-
-
-def _rational_series(action: FieldMap, x: Jet, m: Values) -> Jet:
-    """The Jet z = m + x (m + z)/2, coefficient by coefficient."""
-    start: Any = m if isinstance(m, Jet) else Jet.constant(m, x.order)
-    shape = np.broadcast_shapes(x.shape[:-1], start.shape[:-1])
-    if start.shape[:-1] != shape:
-        start = np.broadcast_to(start, (*shape, start.shape[-1]))
-    z = Jet.growing(start.value, min(x.order, start.order))
-    right: Jet = start + action(x, start + z) / 2
-    z.node.depends((right.node, 0), rule=lambda k: right.node.known[k])
-    return z
 
 
 def _exact_action(representation: Representation, matrix: Values, m: Values) -> ObjectArray:

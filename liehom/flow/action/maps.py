@@ -12,6 +12,7 @@ import numpy as np
 from liehom.base.errors import InputError, SingularError
 from liehom.base.typing import Array, IntegerArray, ObjectArray, Values, ValuesLike
 from liehom.flow.door import Field, Matrix, Representation, Scalar, copies_of
+from liehom.flow.series import arrays
 from liehom.flow.series.arrays import NumbersLike, across_lanes, in_lanes, is_exact, is_jax, namespace
 from liehom.flow.series.jet import Jet
 from liehom.flow.series.lie_series import Bilinear, values_of
@@ -447,18 +448,11 @@ def _odd_horner(_: int, state: tuple[Values, Values, Values, int]) -> tuple[Valu
 
 
 def solve(a: Values, b: Values) -> Values:
-    """The solution x of a x = b, for b of shape (..., n, k); in extended precision by refinement of float64."""
-    xp = namespace(a, b)
+    """The solution x of a x = b, for b of shape (..., n, k)."""
     try:
-        if xp is not np or np.result_type(a, b) != np.longdouble:
-            return xp.linalg.solve(a, b)
-        rough = np.linalg.inv(a.astype(np.float64)).astype(np.longdouble)
+        return arrays.solve(a, b)
     except np.linalg.LinAlgError:
         raise SingularError("a linear system is singular: 1 - x/2, for a Cayley transform of x") from None
-    x: Values = rough @ b
-    for _ in range(3):
-        x = x + rough @ (b - a @ x)
-    return x
 
 
 def inverse(a: Values) -> Values:

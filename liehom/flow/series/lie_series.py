@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Hashable, Iterable, Sequence
 from fractions import Fraction
 from math import factorial
+from operator import matmul
 from typing import Any, TypeAlias
 
 import flint
@@ -336,28 +337,22 @@ def dcayley_inverse(x: Values, y: Values) -> Values:
 def cayley_series(x: Jet) -> Jet:
     """cay(x(t)) = (1 - x/2)^-1 (1 + x/2) for matrices x(t) (..., n, n) with x(0) = 0, else `SeriesError`.
 
-    From y = 1 + x (1 + y)/2: y_k = x_k + (1/2) sum_(0 < i < k) x_i y_(k-i).
-
     Examples
     --------
     >>> cayley_series(Jet([[[0.0]], [[1.0]], [[0.0]], [[0.0]]])).coefficients.ravel()
     array([1.  , 1.  , 0.5 , 0.25])
     """
-    node = _square_matrices(without_constant(x, check=True)).node
-    one = _identity(node.value)
-    result = Node(node.order, one, [one])
+    x = _square_matrices(without_constant(x, check=True))
+    return cayley_moved(matmul, x, recurrences.identities(x.node.value))
 
-    def rule(k: int) -> Coefficient:
-        total = None
-        for i in range(1, k):
-            if node.known[i] is not None and result.known[k - i] is not None:
-                total = plus(total, node.known[i] @ result.known[k - i])
-        if total is None:
-            return node.known[k]
-        return total / 2 if node.known[k] is None else node.known[k] + total / 2
 
-    result.depends((node, 0), (result, 1), rule=rule)
-    return Jet.from_node(result)
+def cayley_moved(action: Callable[[Any, Any], Any], x: Jet, m: Values) -> Jet:
+    """The Jet z = m + x (m + z)/2, coefficient by coefficient, for x without constant term."""
+    start: Any = m if isinstance(m, Jet) else Jet.constant(m, x.order)
+    z = Jet.growing(start.value, min(x.order, start.order))
+    right: Jet = start + action(x, start + z) / 2
+    z.node.depends((right.node, 0), rule=lambda k: right.node.known[k])
+    return z
 
 
 def cayley_magnus(a: Jet) -> Jet:
@@ -396,7 +391,7 @@ def log_series(y: Jet) -> Jet:
     array([ 0.        ,  1.        , -0.5       ,  0.33333333])
     """
     first = _square_matrices(y).value
-    if not is_traced(first) and bool(np.any(np.asarray(first != _identity(first)))):
+    if not is_traced(first) and bool(np.any(np.asarray(first != recurrences.identities(first)))):
         raise SeriesError("log_series needs y(0) = 1: for another value factor it out first")
     node = without_constant(y).node
     return _matrix_series(node, [Fraction((-1) ** (k + 1), k) for k in range(1, max(node.order, 1) + 1)], one=False)
@@ -407,7 +402,7 @@ def _matrix_series(node: Node, weights: list[Fraction], one: bool) -> Jet:
     powers = [node]
     for _ in weights[1:]:
         powers.append(recurrences.multilinear(lambda a, b: a @ b, [node, powers[-1]]))
-    return Jet.from_node(_weighted(powers, weights, _identity(node.value) if one else None))
+    return Jet.from_node(_weighted(powers, weights, recurrences.identities(node.value) if one else None))
 
 
 def magnus(bracket: Bracket, a: Jet) -> Jet:
@@ -518,9 +513,3 @@ def _square_matrices(x: Jet) -> Jet:
     if x.ndim < 2 or x.shape[-1] != x.shape[-2]:
         raise ShapeError(f"the values must be square matrices (..., n, n), got shape {x.shape}")
     return x
-
-
-def _identity(like: Values) -> npt.NDArray[Any]:
-    """Identity matrix with numbers of the kind of `like`, broadcast to its shape."""
-    eye = namespace(like).eye(like.shape[-1])
-    return zeros(like, tuple(like.shape)) + eye.astype(int if like.dtype == object else like.dtype)
