@@ -264,8 +264,8 @@ def tableau(name: str | Tableau) -> Tableau:
         return name
     if not isinstance(name, str):
         raise InputError(f"expected the name of a tableau, or a Tableau, got {displayed(name)}")
-    known = {_key(x): x for x in tableau_names()} | {_key(x): y for x, y in _ALIASES.items()}
-    key = _key(name)
+    known = {key_of(x): x for x in tableau_names()} | {key_of(x): y for x, y in _ALIASES.items()}
+    key = key_of(name)
     if key in known:
         return _made(known[key])
     near = get_close_matches(key, known, n=1)
@@ -286,7 +286,8 @@ def tableau_names() -> tuple[str, ...]:
     return (*EXPLICIT, "dop853", *COLLOCATION, *(f"gauss{s}" for s in range(2, 8)), "radau9", *IMPLICIT)
 
 
-def _key(name: str) -> str:
+def key_of(name: str) -> str:
+    """A name without what does not matter in it: case, spaces, hyphens and underscores."""
     return re.sub(r"[\s_-]+", "", name.lower())
 
 
