@@ -17,7 +17,7 @@ from liehom.flow.action.frames import inner_product
 from liehom.flow.action.maps import action_map, inverse, matrices_of, solve
 from liehom.flow.door import LieAlgebra, Representation, batched_ranks, coadjoint
 from liehom.flow.series import node as recurrences
-from liehom.flow.series.arrays import as_values, is_exact, is_jax, is_traced, namespace, zeros
+from liehom.flow.series.arrays import as_values, is_exact, is_jax, is_traced, namespace, norm, zeros
 from liehom.flow.series.jet import Jet
 from liehom.flow.tracing.array import Traced
 from liehom.flow.tracing.graph import Tape
@@ -111,7 +111,7 @@ class LeastNorm(Components):
             at, field = at.astype(np.float64), field.astype(np.float64)
         left, sizes, right = xp.linalg.svd(at, full_matrices=False)
         if self._dimension is None:
-            noise = NOISE_RTOL * self._largest * _length(value)[..., None]
+            noise = NOISE_RTOL * self._largest * norm(value)[..., None]
             kept = sizes > xp.maximum(RANK_RTOL * sizes[..., :1], noise)
         else:
             kept = (np.arange(sizes.shape[-1]) < self._dimension) & (sizes > 0)
@@ -125,9 +125,9 @@ class LeastNorm(Components):
 
     def _check_tangent(self, m: Array, field: Array, up: Array) -> None:
         normal = field - (np.swapaxes(up, -1, -2) @ (up @ field[..., None]))[..., 0]
-        sizes = _length(normal)
+        sizes = norm(normal)
         # a normal component below rtol * 1e-6 |m| counts as round-off
-        bound = self._rtol * (_length(field) + 1e-6 * _length(m))
+        bound = self._rtol * (norm(field) + 1e-6 * norm(m))
         if bool(np.any(sizes > bound)):
             index = np.unravel_index(int(np.argmax(np.where(sizes > bound, sizes, -1.0))), sizes.shape)
             place = tuple(map(int, index))
@@ -137,11 +137,6 @@ class LeastNorm(Components):
                 f"the vector field is not tangent to the orbit at m = {m[index]}{where}: X = {field[index]} has the "
                 f"normal component {normal[index]} of size {sizes[index]:.3g}",
             )
-
-
-def _length(v: Values) -> Values:
-    xp = namespace(v)
-    return xp.sqrt(xp.einsum("...i,...i->...", v, v))
 
 
 class GeneratorField(Immutable):

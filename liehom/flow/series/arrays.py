@@ -158,6 +158,12 @@ def zeros(like: Values, shape: tuple[int, ...]) -> npt.NDArray[Any]:
     return out
 
 
+def norm(x: Values) -> Values:
+    """Euclidean norms of x (..., N), shape (...,)."""
+    xp = namespace(x)
+    return xp.sqrt(xp.sum(x * x, axis=-1))
+
+
 def in_lanes(x: Lanes) -> Lanes:
     """x (..., N) with each component contiguous in memory, the last axis outermost; a copy if x has another layout.
 

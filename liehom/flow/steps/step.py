@@ -18,7 +18,7 @@ from liehom.flow.action.exponential import Exponential
 from liehom.flow.action.field import GeneratorField, check_point
 from liehom.flow.action.space import Action
 from liehom.flow.door import Representation
-from liehom.flow.series.arrays import as_values, is_exact, is_jax, namespace, zeros
+from liehom.flow.series.arrays import as_values, is_exact, is_jax, namespace, norm, zeros
 from liehom.flow.series.jet import Jet
 from liehom.flow.series.node import Node
 
@@ -73,9 +73,7 @@ def size_from_defects(
 
 def length(x: Values) -> Array:
     """2-norm over the last axis, in float64."""
-    values = floats(x)
-    root: Array = namespace(values).sqrt((values * values).sum(axis=-1))
-    return root
+    return norm(floats(x))  # type: ignore[return-value]
 
 
 def squared_length(x: Values, axes: int = 0) -> Array:
