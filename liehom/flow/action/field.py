@@ -465,6 +465,17 @@ def lie_poisson_tensor(algebra: LieAlgebra, m: ValuesLike, *, sign: int = 1) -> 
     return sign * np.stack(rows, axis=-2) + 0.0
 
 
+def recorded(function: Callable[..., Any], what: str, *inputs: Traced, remedy: str = "") -> Values:
+    """The value of a user's function of traced points and times, which is to be differentiated."""
+    try:
+        return joined(guarded(function, what, *inputs), inputs[0])
+    except (LiehomError, TypeError, AttributeError, ValueError, IndexError) as error:
+        raise InputError(
+            f"{what} cannot be differentiated, because it does not run on tracers ({type(error).__name__}: {error}): "
+            f"write it with numpy functions{remedy}"
+        ) from error
+
+
 def _differentiated(H: Hamiltonian, n: int) -> tuple[Callable[[Any, Any], Values], bool]:
     """The function (m, t) -> dH(m, t), and whether it depends on t."""
     if callable(H) and not hasattr(H, "free_symbols"):
@@ -481,13 +492,7 @@ def _differentiated(H: Hamiltonian, n: int) -> tuple[Callable[[Any, Any], Values
 
     tape = Tape()
     m, t = Traced.inputs(tape, 0, n), Traced(tape, tape.input(n))
-    try:
-        energy = joined(guarded(function, "H", *((m, t) if timed else (m,))), m)
-    except (LiehomError, TypeError, AttributeError, ValueError, IndexError) as error:
-        raise InputError(
-            f"H cannot be differentiated, because it does not run on tracers ({type(error).__name__}: {error}): write "
-            "it with numpy functions, or give gradient="
-        ) from error
+    energy = recorded(function, "H", *((m, t) if timed else (m,)), remedy=", or give gradient=")
     if np.shape(energy) != ():
         raise ShapeError(f"H has shape {np.shape(energy)} at a point, expected () (sum over the last axis of m)")
     slopes = partial_derivatives(Traced(tape, energy).entry, [x.entry for x in m])
