@@ -52,10 +52,8 @@ def _parameters(function: Callable[..., Any]) -> tuple[list[inspect.Parameter], 
 
 
 def call_form(function: Callable[..., Any], what: str) -> CallForm:
-    """The `CallForm` of a function.
-
-    A second parameter without a default, or a parameter named t, is the time. A third parameter without a default, or a
-    parameter named args, is args.
+    """The `CallForm` of a function: its time is a second parameter without a default, or one named t; its args are a
+    third parameter without a default, or one named args.
     """
     parameters = _parameters(function)
     if parameters is None:
@@ -83,10 +81,8 @@ def call_form(function: Callable[..., Any], what: str) -> CallForm:
 
 
 def called_as_event(function: Callable[..., Any], args: Pytree, what: str) -> Evaluated:
-    """An event function as a function of (t, y), in whichever order its parameters are.
-
-    The order is (t, y), as in scipy's solve_ivp. If the second parameter is named t, it is (m, t), as that of psi.
-    A third parameter without a default, or a parameter named args, is args.
+    """An event function as a function of (t, y), as in scipy's solve_ivp, or, if the second parameter is named t, of
+    (m, t) as psi is; args as for psi.
     """
     parameters = _parameters(function)
     if parameters is None:
@@ -378,10 +374,7 @@ class Components:
 
 # -- one array or Jet from the results of functions ----------------------------------------------------
 def joined(x: Any, m: Values) -> Any:
-    """One array or Jet from a list, tuple or object array of numbers, arrays or Jets.
-
-    A list or tuple has either the components, each of shape (...,), or the rows of the trajectories as its entries.
-    """
+    """One array or Jet from an object array, or from a list of the components (...,) or the rows of the trajectories."""
     if isinstance(x, Jet) or is_lazy(x):
         return x
     if isinstance(x, np.ndarray):

@@ -197,11 +197,8 @@ class TrueExponential(Exponential, ABC):
 
 @final
 class SeriesExponential(TrueExponential):
-    """exp(rho(x)) m by its Taylor series on the vector, in substeps of norm at most 2.
-
-    The increment is summed separately from m, so that round-off is relative to the increment. For large rho(x), and on
-    JAX arrays, exp(rho(x)) - 1 is computed as a matrix, in extended precision where the platform has it. On exact
-    numbers exp is the finite sum if rho(x) is nilpotent, else a `FieldError`.
+    """exp(rho(x)) m by its Taylor series on the vector, in substeps of norm at most 2; for large rho(x), and on JAX
+    arrays, by exp(rho(x)) - 1 as a matrix, in extended precision where the platform has it.
     """
 
     name = "exp (series)"
@@ -378,11 +375,11 @@ def _quotients(q: Any) -> tuple[Values, Values]:
         if bool(small.all()):
             return _near(q)
         if not bool(small.any()) and bool((q > 0).all()):
-            return _far(np, q, np.sqrt(q), "sin", "cos")
+            return _far(np, np.sqrt(q), "sin", "cos")
     safe = xp.where(small, 1.0, q)
     r, turns = xp.sqrt(xp.abs(safe)), safe > 0
     # in the branch that is not taken, neither the value nor (under jax.grad) the derivative may overflow
-    round_, straight = _far(xp, safe, r, "sin", "cos"), _far(xp, safe, xp.where(turns, 0.5, r), "sinh", "cosh")
+    round_, straight = _far(xp, r, "sin", "cos"), _far(xp, xp.where(turns, 0.5, r), "sinh", "cosh")
     s, c = (xp.where(small, near, xp.where(turns, a, b)) for near, a, b in zip(_near(q), round_, straight, strict=True))
     return s, c
 
@@ -397,17 +394,14 @@ def _near(q: Values) -> tuple[Values, Values]:
     return 1 - q / 6 * (1 - q / 20 * s), 0.5 - q / 24 * (1 - q / 30 * c)
 
 
-def _far(xp: Any, q: Values, r: Values, sine: str, cosine: str) -> tuple[Values, Values]:
+def _far(xp: Any, r: Values, sine: str, cosine: str) -> tuple[Values, Values]:
     """Arrays of S and C by functions of half the angle, r = |q|^(1/2)."""
     half = getattr(xp, sine)(0.5 * r) / r
     return 2.0 * half * getattr(xp, cosine)(0.5 * r), 2.0 * half * half
 
 
 def rotation_quotients(q: Any) -> tuple[Values, Values, Values]:
-    """Arrays or traced values of S, C and D.
-
-    D is (1 - S)/q except near 0: its error relative to 1/q is round-off, which is below that of A in D A^3.
-    """
+    """S, C and D; the error of D = (1 - S)/q, relative to 1/q, is round-off, which is below that of A in D A^3."""
     if type(q) is Traced:
         sine: Values = entire_function("sinq", q / 4)
         s, c = sine * entire_function("cosq", q / 4), 0.5 * sine * sine

@@ -45,10 +45,7 @@ class MeasuredTable(DisplayedTable, ABC):
         return str(self)
 
     def to_csv(self, path: str | os.PathLike[str] | None = None, *, force: bool = False) -> str:
-        """Comma-separated values with a line of names, all digits, and empty entries for NaN and None.
-
-        They are also written to a path if one is given; `force` replaces an existing file.
-        """
+        """Comma-separated values with a line of names, all digits, and empty entries for NaN and None, also in a file."""
         text = comma_separated([["" if x is None or x != x else x for x in line] for line in self._lines()])
         if path is not None:
             check_target(path, force=force)

@@ -35,10 +35,7 @@ MAX_ORDER = 14
 @final
 @dataclass(frozen=True)
 class RootedTree:
-    """A rooted tree, written as the bracket of the subtrees at its root; the single vertex is ``RootedTree()``.
-
-    The order of the subtrees matters for ``==`` only; `tree_at` returns each tree in one order.
-    """
+    """A rooted tree, written as the bracket of the subtrees at its root; the single vertex is ``RootedTree()``."""
 
     children: tuple[RootedTree, ...] = ()
 

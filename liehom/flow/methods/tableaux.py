@@ -160,11 +160,7 @@ def _coefficients(c: list[Scalar], field: Field) -> list[list[Scalar]]:
 
 
 def gauss(stages: int) -> Tableau:
-    """The Gauss method with s stages, of order 2 s: collocation at the zeros of the Legendre polynomial.
-
-    Up to 3 stages it is exact, over QQ, QQ(sqrt(3)) and QQ(sqrt(15)). For 4 to 7 stages, the nodes are computed with 60
-    digits, and the coefficients are rounded to float64.
-    """
+    """The Gauss method with s stages, from 1 to 7, of order 2 s, up to 3 stages exact, else rounded to float64."""
     if isinstance(stages, bool) or not isinstance(stages, int) or not 1 <= stages <= MAX_ORDER // 2:
         raise InputError(f"a Gauss method has 1 to {MAX_ORDER // 2} stages here, got {stages!r}")
     exact = {

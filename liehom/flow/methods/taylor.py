@@ -8,7 +8,7 @@ docs/theory/taylor.md.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Sequence
+from collections.abc import Hashable, Sequence
 from dataclasses import dataclass
 from math import ceil, log, log2
 from types import ModuleType
@@ -204,13 +204,7 @@ class ProjectedSeries(TaylorSeries):
         self, action: Action, m: Values, coefficients: Sequence[Values], quadrics: Quadrics, start: Values | None
     ) -> None:
         super().__init__(action, m, coefficients)
-        self._quadrics = quadrics
-        self._levels: Values | None = None
-        if quadrics.blocks and isinstance(m, Traced):  # computed once for each trajectory
-            levels = [m.tape.trajectory_constant(_level(quadrics, b)) for b in range(len(quadrics.blocks))]
-            self._levels = Traced(m.tape, levels)
-        elif quadrics.blocks:
-            self._levels = quadrics.levels(m if start is None else start)
+        self._quadrics, self._numbers = quadrics, _numbers(quadrics, m, start)
 
     def point(self, h: Values) -> Values:
         """Point after the step of size h (..., 1), shape (..., N)."""
@@ -221,7 +215,7 @@ class ProjectedSeries(TaylorSeries):
         return self._landed(point), velocity
 
     def _landed(self, point: Values) -> Values:
-        return point if self._levels is None else self._quadrics.project(point, self._levels)
+        return self._quadrics.project(point, self._numbers) if self._numbers else point
 
 
 @final
@@ -276,11 +270,7 @@ class InvariantSeries(TaylorSeries):
         super().__init__(far.action, far.m, far.trajectory)
         self._far, self._landing = far, landing
         self._landed = LastSize(self._at)
-        if isinstance(self.m, Traced):
-            tape = self.m.tape
-            self._numbers: Sequence[Values] = [Traced(tape, tape.trajectory_constant(f)) for f in landing.functions()]
-        else:
-            self._numbers = landing.numbers(self.m if start is None else start)
+        self._numbers = _numbers(landing, self.m, start)
 
     def point(self, h: Values) -> Values:
         """Point after the step of size h (..., 1), shape (..., N)."""
@@ -328,6 +318,8 @@ def _finite(coefficients: list[Values]) -> list[Values]:
     return ended
 
 
-def _level(quadrics: Quadrics, index: int) -> Callable[[Array], Array]:
-    """Function of points (..., N) with the values of a form, of shape (...,)."""
-    return lambda points: quadrics.levels(points)[..., index]
+def _numbers(landing: Quadrics | InvariantLanding, m: Values, start: Values | None) -> Sequence[Values]:
+    """The numbers of the orbits, in compiled code computed once for each trajectory."""
+    if isinstance(m, Traced):
+        return [Traced(m.tape, m.tape.trajectory_constant(f)) for f in landing.functions()]
+    return landing.numbers(m if start is None else start)

@@ -118,10 +118,7 @@ def _is_number(value: object) -> bool:
 
 
 def constant_like(like: Values, value: NumbersLike) -> npt.NDArray[Any]:
-    """A copy of a constant as an array of the same kind of numbers as `like`.
-
-    A number takes the type of `like`, as in numpy; next to exact scalars it must be exact.
-    """
+    """A copy of a constant as an array of the same kind of numbers as `like`, exact if these are."""
     if is_lazy(value):
         return as_values(value)
     dtype = getattr(like, "dtype", np.dtype(object))

@@ -521,11 +521,7 @@ HOOKS.update(ufunc=apply_ufunc, function=apply_function, method=method)
 
 
 def expanded_by_jax(function: Callable[..., Values], *operands: Jet | Values) -> Jet:
-    """The Jet of function(a, b, ...) for Jets, or arrays, whose values are JAX arrays.
-
-    Coefficient k is computed from the coefficients up to k of the operands, without those computed before. So the
-    expansion to order n costs O(n^3) operations. Functions written with numpy cost O(n^2).
-    """
+    """The Jet of function(a, b, ...) for Jets, or arrays, whose values are JAX arrays, in O(n^3) operations."""
     jet: Any = import_module("jax.experimental.jet")
     jnp = import_module("jax.numpy")
     nodes = [x.node for x in operands if isinstance(x, Jet)]

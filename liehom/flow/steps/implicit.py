@@ -138,14 +138,7 @@ def _parts(k: Stage) -> tuple[Any, Any]:
 MAX_VECTORS = 80  # largest dimension of a Krylov space; the solution of least residual in it is returned
 
 
-def gmres(
-    product: Callable[[Array], Array],
-    right: Array,
-    axes: tuple[int, ...],
-    *,
-    rtol: float = 1e-4,
-    most: int = MAX_VECTORS,
-) -> Array:
+def gmres(product: Callable[[Array], Array], right: Array, axes: tuple[int, ...], *, rtol: float = 1e-4) -> Array:
     """Approximate solutions of product(x) = right, of the shape of right, by the method of minimal residuals."""
 
     def norm(x: Array) -> Array:
@@ -155,7 +148,7 @@ def gmres(
     basis = [right / np.where(size > 0, size, 1.0)]
     columns: list[list[Array]] = []
     weights: list[Array] = []
-    for j in range(min(most, int(np.prod([right.shape[a] for a in axes])))):
+    for j in range(min(MAX_VECTORS, int(np.prod([right.shape[a] for a in axes])))):
         w = product(basis[j])
         column = []
         for v in basis:
