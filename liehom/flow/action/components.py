@@ -374,7 +374,7 @@ class Components:
 
 # -- one array or Jet from the results of functions ----------------------------------------------------
 def joined(x: Any, m: Values) -> Any:
-    """One array or Jet from an object array, or from a list of the components (...,) or the rows of the trajectories."""
+    """One array or Jet from an object array, or a list of the components (...,) or the rows of the trajectories."""
     if isinstance(x, Jet) or is_lazy(x):
         return x
     if isinstance(x, np.ndarray):

@@ -45,7 +45,7 @@ class MeasuredTable(DisplayedTable, ABC):
         return str(self)
 
     def to_csv(self, path: str | os.PathLike[str] | None = None, *, force: bool = False) -> str:
-        """Comma-separated values with a line of names, all digits, and empty entries for NaN and None, also in a file."""
+        """Comma-separated values, empty for NaN and None, also written to a path; `force` replaces a file there."""
         text = comma_separated([["" if x is None or x != x else x for x in line] for line in self._lines()])
         if path is not None:
             check_target(path, force=force)
