@@ -193,7 +193,7 @@ class PosedBody(Body):
         vector = vector if vector.dtype == np.longdouble else vector.astype(float)
         if vector.shape[-1:] != self.inertia.shape[:1]:
             raise ShapeError(f"the momentum or velocity has shape {vector.shape}, expected (..., {len(self.inertia)})")
-        return self._inertia(vector) if momentum is None else vector
+        return np.asarray(self._inertia(vector)) if momentum is None else vector
 
     @abstractmethod
     def _forced(self, y: Values, force: Callable[[Any], Any]) -> Values:

@@ -319,7 +319,7 @@ def observed_order(
 
 
 def decreasing(name: str, values: Iterable[float], expected: str, least: int = 0) -> tuple[float, ...]:
-    """Different positive numbers in decreasing order, at least so many."""
+    """Different positive numbers in decreasing order, at least a number of them."""
     try:
         numbers = sorted({float(x) for x in values}, reverse=True)
     except (TypeError, ValueError):
