@@ -392,25 +392,18 @@ def _newton_on_tape(
     equation: Equation, start: Values, tape: Tape, wanted: Tracer, reach: float
 ) -> tuple[Traced, Tracer]:
     """Newton's method in the lanes `wanted`, without the search for a direction that arrays have."""
-    shape = np.shape(start)
-    count = shape[0] * shape[1]
 
     def iteration(active: Tracer, x: Tracer, before: Tracer, solved: Tracer) -> tuple[list[Values], Values]:
-        residual = equation.value(x) - x
-        step: Tracer = np.linalg.solve(np.eye(count) - _whole(equation, x), residual.reshape(count)).reshape(shape)
-        length = np.sqrt((step * step).sum())
-        along = ((step * residual).sum() > 0) | (length <= ALONG * reach)
-        limited = length > reach
-        step = step * np.where(limited, reach / np.where(limited, length, 1.0), 1.0)
+        step, along, limited = _compiled_step(equation, x, reach)
         trial = x + step
         change, size = np.abs(step).max(), np.abs(trial).max()
         done = (change <= 2 * EPS * size) | (
             (change <= 1e4 * EPS * np.maximum(size, 1.0)) & ((change >= before / 2) | (change == 0))
         )
-        done = active & done & ~limited
+        done = active & done & ~limited[0, 0]
         x = np.where(active, trial, x)
         solved = solved | done
-        active = active & ~done & along & np.isfinite(change)
+        active = active & ~done & along[0, 0] & np.isfinite(change)
         return [active, x, np.where(active, change, before), solved], active
 
     first = [wanted, start, np.inf, tape.false]
@@ -418,12 +411,20 @@ def _newton_on_tape(
     return x, solved
 
 
-def _whole(equation: Equation, x: Tracer) -> Tracer:
-    """The derivative of F(A x), shape (S n, S n)."""
-    blocks: Tracer = equation.blocks(x)
-    (s, n), matrix = np.shape(x), equation.matrix
-    rows = [[blocks[i, a, b] * matrix[i, j] for j in range(s) for b in range(n)] for i in range(s) for a in range(n)]
-    return np.stack([np.stack(row) for row in rows])
+def _compiled_step(equation: Equation, x: Tracer, reach: float) -> tuple[Tracer, Tracer, Tracer]:
+    """The step of Newton's method at x (S, ..., n), at most the reach long, and, both of shape (1, ..., 1), whether it
+    goes along the pseudo-transient and whether it was longer.
+    """
+    xp, (s, *lead, n) = namespace(x), np.shape(x)
+    residual, matrix = equation.value(x) - x, xp.asarray(equation.matrix, dtype=x.dtype)
+    derivative = xp.einsum("i...ab,ij->...iajb", equation.blocks(x), matrix).reshape(*lead, s * n, s * n)
+    right = xp.moveaxis(residual, 0, -2).reshape(*lead, s * n, 1)
+    step = xp.linalg.solve(xp.eye(s * n, dtype=x.dtype) - derivative, right)
+    step = xp.moveaxis(step.reshape(*lead, s, n), -2, 0)
+    length = xp.sqrt(xp.sum(step * step, axis=(0, -1), keepdims=True))
+    along = (xp.sum(step * residual, axis=(0, -1), keepdims=True) > 0) | (length <= ALONG * reach)
+    limited = length > reach
+    return step * xp.where(limited, reach / xp.where(limited, length, 1.0), 1.0), along, limited
 
 
 def solved_by_jax(equation: Equation, start: Tracer, reach: float) -> Tracer:
@@ -431,30 +432,21 @@ def solved_by_jax(equation: Equation, start: Tracer, reach: float) -> Tracer:
     more step of Newton's method from the solution.
     """
     jax = import_module("jax")
-    jnp, (s, *lead, n) = jax.numpy, start.shape
-    if s * n > MAX_TRACED:
+    jnp = jax.numpy
+    if start.shape[0] * start.shape[-1] > MAX_TRACED:
         # a loop, as sixty copies of the function would take minutes to compile
         found = jax.lax.fori_loop(0, JAX_ITERATIONS, lambda _, x: equation.value(x), start)
         return jnp.where(_is_small(equation.value(found) - found, found), found, jnp.nan)
-    matrix, one = jnp.asarray(equation.matrix, start.dtype), jnp.eye(s * n, dtype=start.dtype)
-
-    def newton(x: Tracer) -> Tracer:
-        derivative = jnp.einsum("i...ab,ij->...iajb", equation.blocks(x), matrix).reshape(*lead, s * n, s * n)
-        right = jnp.moveaxis(equation.value(x) - x, 0, -2).reshape(*lead, s * n, 1)
-        return jnp.moveaxis(jnp.linalg.solve(one - derivative, right).reshape(*lead, s, n), -2, 0)
 
     def iteration(state: tuple[int, Tracer, Tracer]) -> tuple[int, Tracer, Tracer]:
         k, x, _ = state
-        step = newton(x)
-        length = jnp.sqrt(jnp.sum(step * step, axis=(0, -1), keepdims=True))
-        along = (jnp.sum(step * (equation.value(x) - x), axis=(0, -1), keepdims=True) > 0) | (length <= ALONG * reach)
-        step = step * jnp.where(length > reach, reach / jnp.where(length > reach, length, 1.0), 1.0)
+        step, along, _ = _compiled_step(equation, x, reach)
         step = jnp.where(along, step, jnp.nan)  # it would lead to another solution, far away
         return k + 1, x + step, jnp.all(_is_small(step, x) | ~jnp.isfinite(step))
 
     found = jax.lax.while_loop(lambda s: (s[0] < NEWTON_ITERATIONS) & ~s[2], iteration, (0, start, start.size == 0))[1]
     found = jax.lax.stop_gradient(found)
-    step = newton(found)
+    step, *_ = _compiled_step(equation, found, reach)
     return jnp.where(_is_small(jax.lax.stop_gradient(step), found), found + step, jnp.nan)
 
 
