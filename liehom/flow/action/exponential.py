@@ -330,12 +330,12 @@ class Rodrigues(TrueExponential):
                 "use exponential='exp'"
             )
         super().__init__(representation)
-        self._form, self._power = identity
+        self._identity = identity
 
     name = "exp (Rodrigues)"
 
     def act(self, x: Values, m: Values) -> Values:
-        return rodrigues_action(self.infinitesimal, PowerIdentity(self._form, self._power), x, m)
+        return rodrigues_action(self.infinitesimal, self._identity, x, m)
 
 
 def rodrigues_action(infinitesimal: FieldMap, identity: PowerIdentity, x: Values, m: Values) -> Values:

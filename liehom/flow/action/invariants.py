@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Hashable, Iterable, Sequence
+from collections.abc import Hashable, Iterable, Sequence
 from fractions import Fraction
 from itertools import combinations, combinations_with_replacement, islice
 from math import lcm
@@ -129,10 +129,6 @@ class Quadrics:
     def numbers(self, points: Values) -> list[Values]:
         """The values m^T Q_b m of the forms at points (..., N), each of shape (...,)."""
         return [self._value(block, self._part(block, points)) for block in self.blocks]
-
-    def functions(self) -> list[Callable[[Array], Array]]:
-        """The numbers as functions of the points (L, N), one by one."""
-        return [lambda points, b=b: cast(Array, self.numbers(points)[b]) for b in range(len(self.blocks))]  # type: ignore[misc]
 
     def project(self, m: Values, numbers: Sequence[Values]) -> Values:
         """The point m + lambda Q m of the level sets with the smallest |lambda|, for m (..., N) near them."""
@@ -469,11 +465,6 @@ class InvariantLanding(ABC):
     def serves(self, points: Array) -> bool:
         """Whether F lands on the orbits of all points (..., n)."""
         return all(np.isfinite(v).all() for v in cast("list[Array]", self.numbers(points)))
-
-    def functions(self) -> list[Callable[[Array], Array]]:
-        """The numbers as functions of the points (L, n), one by one."""
-        count = len(self.numbers(np.ones((1, self.invariants.size))))
-        return [lambda points, i=i: cast(Array, self.numbers(points)[i]) for i in range(count)]  # type: ignore[misc]
 
     def landed(self, m: Values, numbers: Sequence[Values], steps: int = 2) -> tuple[Values, Values | BooleanArray]:
         """The points of the orbits near m (..., n), by F at least so often, and whether there is one, (...,)."""

@@ -321,5 +321,7 @@ def _finite(coefficients: list[Values]) -> list[Values]:
 def _numbers(landing: Quadrics | InvariantLanding, m: Values, start: Values | None) -> Sequence[Values]:
     """The numbers of the orbits, in compiled code computed once for each trajectory."""
     if isinstance(m, Traced):
-        return [Traced(m.tape, m.tape.trajectory_constant(f)) for f in landing.functions()]
+        count = len(landing.numbers(np.ones((1, m.shape[-1]))))
+        functions = [lambda points, i=i: landing.numbers(points)[i] for i in range(count)]  # type: ignore[misc]
+        return [Traced(m.tape, m.tape.trajectory_constant(f)) for f in functions]
     return landing.numbers(m if start is None else start)
