@@ -322,6 +322,6 @@ def _numbers(landing: Quadrics | InvariantLanding, m: Values, start: Values | No
     """The numbers of the orbits, in compiled code computed once for each trajectory."""
     if isinstance(m, Traced):
         count = len(landing.numbers(np.ones((1, m.shape[-1]))))
-        functions = [lambda points, i=i: landing.numbers(points)[i] for i in range(count)]  # type: ignore[misc]
+        functions = [lambda points, i=i: landing.numbers(points)[i] for i in range(count)]
         return [Traced(m.tape, m.tape.trajectory_constant(f)) for f in functions]
     return landing.numbers(m if start is None else start)
