@@ -396,7 +396,7 @@ def work_precision(
     if lazy := [method.label for method in chosen if not any(method is m for m, _ in runs)]:
         raise InputError(f"{', '.join(lazy)}: methods of scipy have no fixed step sizes, give tolerances too")
     exact = _exact(field, start, span, reference, orbit=not (field.time_dependent and clock == "nominal"))
-    rows = _finished(runs, lambda method, setting: _row(method, setting, exact, int(repeats)), progress)
+    rows = _finished(runs, partial(_row, exact=exact, repeats=int(repeats)), progress)
     return WorkPrecisionTable(
         rows=sorted_rows(rows, [method.label for method in chosen]),
         t_span=(float(span[0]), float(span[1])),
@@ -419,20 +419,12 @@ def _settings(dts: Iterable[float], tolerances: Iterable[float]) -> list[Setting
 
 
 class _Exact(NamedTuple):
-    """The exact points at the end, their accuracy, and the solution as a series if there is one."""
+    """The exact points at the end, their accuracy, how they were found, and the errors of other points."""
 
     points: Array
     accuracy: float
     text: str
-    end: np.floating[Any]
-    series: Reference | None
-    orbit: bool
-
-    def errors(self, points: Array) -> tuple[float, float]:
-        """(orbit error, trajectory error)."""
-        if self.series is not None:
-            return errors_of(self.series, points, self.end, orbit=self.orbit)
-        return NAN, root_mean_square(np.linalg.norm(points - self.points, axis=-1))
+    errors: Callable[[Array], tuple[float, float]]  # of the orbit and of the trajectory
 
 
 def _exact(
@@ -446,6 +438,10 @@ def _exact(
     """The reference: the given one, Taylor series, or two runs of DOP853."""
     first, last = span
     points: Any
+
+    def apart(reached: Array) -> tuple[float, float]:
+        return NAN, root_mean_square(np.linalg.norm(reached - points, axis=-1))
+
     if isinstance(reference, tuple):
         try:
             points, accuracy = np.asarray(reference[0], dtype=np.longdouble), float(reference[1])
@@ -455,17 +451,17 @@ def _exact(
             raise InputError(f"reference is {displayed(reference)}, expected a Reference or (points, accuracy)")
         if points.shape != start.shape:
             raise ShapeError(f"the reference has points of shape {points.shape}, y0 has shape {start.shape}")
-        return _Exact(points, accuracy, "given points", last, None, False)
+        return _Exact(points, accuracy, "given points", apart)
     try:
         series = reference_for(field, start, first, reference)
         points, accuracy = series(last), float(np.max(series.accuracy(last)))
         text = "given series" if reference is not None else "Taylor series in extended precision"
-        return _Exact(points, accuracy, text, last, series, orbit)
+        return _Exact(points, accuracy, text, partial(errors_of, series, end=last, orbit=orbit))
     except SeriesError:
         solver = scipy_method("", "DOP853", field, span, start)
         points, second = (solver.run(Setting(tolerance=x)).points for x in (FINEST, SECOND))
         accuracy = float(np.max(np.linalg.norm(points - second, axis=-1)))
-        return _Exact(points, accuracy, f"scipy DOP853 with tolerance {FINEST:.0e}", last, None, False)
+        return _Exact(points, accuracy, f"scipy DOP853 with tolerance {FINEST:.0e}", apart)
 
 
 def _finished(

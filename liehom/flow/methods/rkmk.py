@@ -12,7 +12,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Callable, Sequence
 from fractions import Fraction
-from functools import partial
+from functools import cached_property, partial
 from typing import Any, NamedTuple, final
 
 import numpy as np
@@ -170,7 +170,6 @@ class Stages:
         # a row without entries beyond its diagonal needs no later stage
         self._sequential = all(j <= i for i, row in enumerate(self.numbers.a) for j, _ in row)
         self._shape = (*np.shape(m)[:-1], action.dimension)
-        self._start: Values | None = None
         self._known: LastSize[list[Values]] = LastSize(lambda h: [])
         self.solver: Callable[[Values], list[Values]] = self._solved  # of all stages at once
 
@@ -210,12 +209,14 @@ class Stages:
         k = solve_implicitly(stages, start, h, rows=rows, reach=reach_of(self.action))
         return [k[i] for i in range(len(rows))]
 
+    @cached_property
+    def _start(self) -> Values:
+        return self.psi(self.m, self.t)
+
     def _stage(self, i: int, u: Values | None, h: Values) -> Values:
         """k_i for the generator u of its point, None for u = 0."""
         c = self.numbers.c[i]
         if u is None and c == 0:
-            if self._start is None:
-                self._start = self.psi(self.m, self.t)
             return h * self._start
         time = self.t + h * c
         if u is None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import partial
+from functools import cached_property, partial
 from math import factorial, sqrt
 from typing import Any, NamedTuple, final
 
@@ -45,8 +45,6 @@ class Linearization:
         self.action, self.psi, self.m, self.t, self.terms = action, psi, m, t, terms
         self.shape = (*np.shape(m)[:-1], action.dimension)
         self.start: Values = psi(m, t)  # f(0, 0)
-        self._jacobian: Values | None = None
-        self._rate: Values | None = None
 
     def value(self, u: Values, s: Real) -> Values:
         """f(u, s), of the shape of u."""
@@ -55,26 +53,22 @@ class Linearization:
             velocity = self.action.exponential.differential_inverse(u, velocity, self.terms)
         return velocity
 
-    @property
+    @cached_property
     def jacobian(self) -> Values:
         """df/du, shape (..., n, n)."""
-        if self._jacobian is None:
-            equation = Equation(lambda y: [self.value(y[0], 0.0)], [((0, 1.0),)])
-            self._jacobian = equation.blocks(zeros(self.m, (1, *self.shape)))[0]
-        return self._jacobian
+        equation = Equation(lambda y: [self.value(y[0], 0.0)], [((0, 1.0),)])
+        return equation.blocks(zeros(self.m, (1, *self.shape)))[0]
 
-    @property
+    @cached_property
     def rate(self) -> Values | None:
         """df/ds, shape (..., n); None if psi does not depend on t."""
         if not self.psi.field.time_dependent:
             return None
-        if self._rate is None:
-            try:
-                moved: Any = self.psi(Jet.constant(self.m, 1), Jet.variable(self.t, 1))
-                self._rate = moved.coefficient(1) if isinstance(moved, Jet) else 0 * moved
-            except NOT_ON_JETS:
-                self._rate = (self.psi(self.m, self.t + DIFFERENCE) - self.start) / DIFFERENCE
-        return self._rate
+        try:
+            moved: Any = self.psi(Jet.constant(self.m, 1), Jet.variable(self.t, 1))
+            return moved.coefficient(1) if isinstance(moved, Jet) else 0 * moved
+        except NOT_ON_JETS:
+            return (self.psi(self.m, self.t + DIFFERENCE) - self.start) / DIFFERENCE
 
     def solve(self, scale: Values, right: Values) -> Values:
         """x with (1 - scale J) x = right, for scale (..., 1)."""

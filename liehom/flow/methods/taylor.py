@@ -12,7 +12,7 @@ from collections.abc import Hashable, Sequence
 from dataclasses import dataclass
 from math import ceil, log, log2
 from types import ModuleType
-from typing import Any, ClassVar, NamedTuple, final
+from typing import Any, ClassVar, final
 
 import numpy as np
 
@@ -46,13 +46,6 @@ SECOND_ORDER = 2  # the same for any other Exp, which agrees with the true one t
 EVEN = 2.0  # a term of a Taylor series is at most this, in units of what it is if the series converges evenly
 SHARP_ORDER = 12  # order from which on a series is mostly so near the orbit that it is landed by one map
 MIN_DEFAULT_ORDER, MAX_DEFAULT_ORDER = 4, 24  # bounds for the order that follows from a tolerance
-
-
-class Landing(NamedTuple):
-    """Data for the landing on the orbits of a run; by exponentials if there are neither quadrics nor invariants."""
-
-    quadrics: Quadrics | None  # onto whose level sets points are projected
-    invariants: InvariantLanding | None  # by repetition of an equivariant map
 
 
 @final
@@ -94,7 +87,8 @@ class Taylor(Step):
     """
 
     n: int
-    _landing: ClassVar[Landing | None] = None  # of `prepare`
+    _prepared: ClassVar[bool] = False
+    _landing: ClassVar[Quadrics | InvariantLanding | None] = None  # of `prepare`; None is by exponentials
 
     def __post_init__(self) -> None:
         checked_integer(self.n, "the order of a Taylor step")
@@ -124,37 +118,32 @@ class Taylor(Step):
         return int(self.n)
 
     def at(self, action: Action, psi: Generator, m: Values, t: Values, *, error_terms: int = 0) -> LocalStep:
-        if self._landing is None:
+        if not self._prepared:
             return self.prepare(action, psi, m, t).at(action, psi, m, t, error_terms=error_terms)
         flow = _flow(psi.field, m, self.order, t[..., 0] if np.ndim(t) else t)
         points = [flow.point(k) for k in range(1, self.order + 1)]
         velocity = [flow.psi(k) for k in range(self.order)]
         if error_terms and isinstance(m, np.ndarray):  # psi = sqrt(t) has no derivative at 0, and steps by tolerance
             points, velocity = _finite(points), _finite(velocity)
-        quadrics, invariants = self._landing
-        if quadrics is not None:
-            return ProjectedSeries(action, m, points, quadrics, psi.start)
+        if isinstance(self._landing, Quadrics):
+            return ProjectedSeries(action, m, points, self._landing, psi.start)
         landed = LandedSeries(action, m, points, velocity, psi.orbit_dimension)
-        return landed if invariants is None else InvariantSeries(landed, invariants, psi.start)
+        return landed if self._landing is None else InvariantSeries(landed, self._landing, psi.start)
 
     @property
     def trace_key(self) -> Hashable:
         """How points are landed."""
-        if self._landing is None:
-            return None
-        quadrics, invariants = self._landing
-        return quadrics is None, None if invariants is None else invariants.key
+        return self._prepared, type(self._landing), getattr(self._landing, "key", None)
 
     def prepare(self, action: Action, psi: Generator, m: Values, t: Values) -> Taylor:
         """The step with the landing on the orbits of a run."""
         start: Any = psi.start if psi.start is not None else m
         points = np.zeros((0, m.shape[-1])) if is_traced(start) else np.asarray(start)
-        invariants = None
-        quadrics = quadric_orbits(action.representation, psi.orbit_dimension, points)
+        landing: Any = quadric_orbits(action.representation, psi.orbit_dimension, points)
         dimensions = np.unique(psi.orbit_dimension)
-        if quadrics is None and len(dimensions) == 1 and points.dtype.kind == "f":
-            invariants = invariant_landing(action.representation, int(dimensions[0]), points)
-        return self.with_prepared(_landing=Landing(quadrics, invariants))
+        if landing is None and len(dimensions) == 1 and points.dtype.kind == "f":
+            landing = invariant_landing(action.representation, int(dimensions[0]), points)
+        return self.with_prepared(_prepared=True, _landing=landing)
 
 
 class TaylorSeries(LocalStep):
