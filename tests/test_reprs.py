@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 import liehom as lh
-from liehom.flow.methods.runge_kutta import rooted_trees
 
 SPHERE = lh.pair("so(4)/so(3)")
 OVER_FLOATS = lh.Pair(lh.sl(2).over(lh.RR), [[1.0, 0.0, 0.0]])
@@ -39,7 +38,7 @@ SHOWN: dict[str, Callable[[], object]] = {
     "<momentum map of an algebra of dimension 3 on "
     "<representation 'defining' of <Lie algebra sl(2) of dimension 3 over QQ> on QQ^2>>":
         lambda: lh.steps.MomentumMap(lh.defining(lh.sl(2)), form=[[0, 1], [-1, 0]]),
-    "<rooted tree [τ, τ] of order 3>": lambda: rooted_trees(3)[0],
+    "<rooted tree [τ, τ] of order 3>": lambda: lh.methods.tableau("heun").first_violation().tree,
     "<closed form of order 2 for Euler()>":
         lambda: lh.closed_form(lh.adjoint(lh.so(3)), ["m0", "2*m1", "3*m2"], lh.Euler(), 2),
     "<exact-orbit update of RigidBody([1.0, 2.0, 3.0])>": lambda: lh.instances.RigidBody([1, 2, 3]).exact_orbit(),

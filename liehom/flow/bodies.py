@@ -185,6 +185,16 @@ class PosedBody(Body):
             psi = parameters_like(force, forced, self._force, "state")
         self.field = GeneratorField(space(self._driven), psi)
 
+    def _in_body(self, momentum: npt.ArrayLike | None, velocity: npt.ArrayLike | None) -> Array:
+        """The momentum in the body, from itself or the velocity, whichever is not None."""
+        if (momentum is None) == (velocity is None):
+            raise InputError("give the momentum or the velocity in the body, one of the two")
+        vector: Any = np.asarray(velocity if momentum is None else momentum)
+        vector = vector if vector.dtype == np.longdouble else vector.astype(float)
+        if vector.shape[-1:] != self.inertia.shape[:1]:
+            raise ShapeError(f"the momentum or velocity has shape {vector.shape}, expected (..., {len(self.inertia)})")
+        return np.asarray(self._inertia(vector)) if momentum is None else vector
+
     @abstractmethod
     def _forced(self, y: Values, force: Callable[[Any], Any]) -> Values:
         """psi at y with the force."""
@@ -249,13 +259,6 @@ def pose_and_momentum(algebra: LieAlgebra, motions: IntegerArray, driven: bool, 
         matrices[range(k, 2 * k), range(rows, rows + k), -1] = 1
         algebra = direct_sum(algebra, abelian(k))
     return Representation(algebra, matrices, name=name)
-
-
-def one_of(momentum: npt.ArrayLike | None, velocity: npt.ArrayLike | None) -> npt.NDArray[Any]:
-    """The momentum or the velocity, whichever is not None."""
-    if (momentum is None) == (velocity is None):
-        raise InputError("give the momentum or the velocity in the body, one of the two")
-    return np.asarray(velocity if momentum is None else momentum)
 
 
 def along(attitude: Values, v: Values) -> Values:
@@ -367,11 +370,7 @@ class AttitudeBody(PosedBody):
         [0.0, 2.0, 0.0]
         """
         q = rotations(attitude)
-        vector = one_of(momentum, velocity)
-        m: Any = vector if vector.dtype == np.longdouble else np.asarray(vector, dtype=float)
-        if m.shape[-1:] != (3,):
-            raise ShapeError(f"the momentum or velocity has shape {m.shape}, expected (..., 3)")
-        m = self._inertia(m) if momentum is None else m
+        m = self._in_body(momentum, velocity)
         lead, kind = np.broadcast_shapes(q.shape[:-2], m.shape[:-1]), np.result_type(q, m)
         rows = np.broadcast_to(q, (*lead, 3, 3)).reshape((*lead, 9)).astype(kind)
         one = np.ones((*lead, int(self._driven)), dtype=kind)
@@ -634,11 +633,10 @@ class SE3Body(PosedBody):
         velocity: npt.ArrayLike | None = None,
     ) -> Array:
         """States (..., N) with attitude, position, and the momentum or velocity (..., 6) in the body."""
-        mu: Any = np.asarray(one_of(momentum, velocity), dtype=float)
+        mu = self._in_body(momentum, velocity)
         q, x = rotations(attitude), np.asarray(position, dtype=float)
-        if mu.shape[-1:] != (6,) or x.shape[-1:] != (3,):
-            raise ShapeError(f"momentum or velocity {mu.shape} and position {x.shape}, expected (..., 6) and (..., 3)")
-        mu = self._inertia(mu) if momentum is None else mu
+        if x.shape[-1:] != (3,):
+            raise ShapeError(f"the position has shape {x.shape}, expected (..., 3)")
         lead = np.broadcast_shapes(q.shape[:-2], x.shape[:-1], mu.shape[:-1])
         q, x = np.broadcast_to(q, (*lead, 3, 3)), np.broadcast_to(x, (*lead, 3))
         linear: Any = along(q, mu[..., 3:])

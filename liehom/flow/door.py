@@ -20,38 +20,3 @@ from liehom.exact.scalars.function_field import FunctionField, RationalFunction
 from liehom.exact.scalars.grammar import Call, Name, Node, Number, Operation, evaluate, parse
 from liehom.exact.scalars.number_fields import AlgebraicNumber, common_field
 from liehom.exact.scalars.rational import QQ
-
-__all__ = [
-    "AlgebraicNumber",
-    "Call",
-    "Copies",
-    "ExactMatrix",
-    "Field",
-    "FunctionField",
-    "InvariantMetric",
-    "LieAlgebra",
-    "Matrix",
-    "Name",
-    "Node",
-    "Number",
-    "Operation",
-    "QQ",
-    "RR",
-    "RankDecision",
-    "RationalFunction",
-    "Representation",
-    "Scalar",
-    "Subalgebra",
-    "abelian",
-    "adjoint",
-    "batched_ranks",
-    "coadjoint",
-    "common_field",
-    "copies_of",
-    "defining",
-    "direct_sum",
-    "evaluate",
-    "parse",
-    "so",
-    "trivial",
-]

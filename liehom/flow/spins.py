@@ -206,11 +206,9 @@ def parameter(name: str, value: npt.ArrayLike, shape: tuple[int, ...]) -> Array:
     if not bool(np.isfinite(array).all()):
         raise InputError(f"{name} is {value!r}, expected finite numbers")
     try:
-        fits = np.broadcast_shapes(array.shape, shape) == shape
+        np.broadcast_to(array, shape)
     except ValueError:
-        fits = False
-    if not fits:
-        raise ShapeError(f"{name} has shape {array.shape}, expected one that broadcasts to {shape}")
+        raise ShapeError(f"{name} has shape {array.shape}, expected one that broadcasts to {shape}") from None
     return array
 
 

@@ -6,7 +6,7 @@ import inspect
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from functools import partial
-from typing import Any, NamedTuple, TypeAlias, final
+from typing import Any, NamedTuple, Self, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -52,10 +52,8 @@ def _parameters(function: Callable[..., Any]) -> tuple[list[inspect.Parameter], 
 
 
 def call_form(function: Callable[..., Any], what: str) -> CallForm:
-    """The `CallForm` of a function.
-
-    A second parameter without a default, or a parameter named t, is the time. A third parameter without a default, or a
-    parameter named args, is args.
+    """The `CallForm` of a function: its time is a second parameter without a default, or one named t; its args are a
+    third parameter without a default, or one named args.
     """
     parameters = _parameters(function)
     if parameters is None:
@@ -83,10 +81,8 @@ def call_form(function: Callable[..., Any], what: str) -> CallForm:
 
 
 def called_as_event(function: Callable[..., Any], args: Pytree, what: str) -> Evaluated:
-    """An event function as a function of (t, y), in whichever order its parameters are.
-
-    The order is (t, y), as in scipy's solve_ivp. If the second parameter is named t, it is (m, t), as that of psi.
-    A third parameter without a default, or a parameter named args, is args.
+    """An event function as a function of (t, y), as in scipy's solve_ivp, or, if the second parameter is named t, of
+    (m, t) as psi is; args as for psi.
     """
     parameters = _parameters(function)
     if parameters is None:
@@ -171,32 +167,30 @@ GeneratorLike: TypeAlias = "Callable[..., Any] | Sequence[ComponentLike] | npt.N
 """What is read as a generator or vector field: a function of m (and t), a list of components, or a constant array."""
 
 
-@final
 class Components:
     """A function (m, t) -> array of shape (..., count), from any form that a user may give."""
 
-    counts: tuple[int, ...]
-    size: int
     time_dependent: bool
-    what: str
-    bound: tuple[Pytree, ...]
-
-    __slots__ = ("_form", "_function", "_jax_leaves", "_source", "bound", "counts", "size", "time_dependent", "what")
 
     def __init__(
-        self, source: GeneratorLike, size: int, counts: tuple[int, ...], what: str, time_dependent: bool | None = None,
-        bound: tuple[Pytree, ...] = (),
-    ) -> None:  # fmt: skip
-        self.size, self.counts, self.what, self._source, self.bound = size, counts, what, source, ()
+        self, source: GeneratorLike, size: int, counts: tuple[int, ...], what: str, time_dependent: bool | None = None
+    ) -> None:
+        self.size, self.counts, self.what, self._source = size, counts, what, source
+        self.bound: tuple[Pytree, ...] = ()  # (args,) that the source is called with
         self._function: Evaluated
         self._form: CallForm | None = None
         self._jax_leaves: tuple[Values, ...] = ()
+        self._read(time_dependent)
+
+    def _read(self, time_dependent: bool | None) -> None:
+        """Set the function, and whether it depends on time."""
+        source, what = self._source, self.what
         refuse_masked(what, source)
         if callable(source):
             self._form, self.time_dependent = checked_form(source, what, time_dependent)
             self._function = called(source, self._form, self.time_dependent)
             if self.takes_args:
-                self._bind(bound)
+                self._bind(self.bound)
         elif is_jax(source) or (isinstance(source, np.ndarray) and (source.dtype != object or source.ndim != 1)):
             self._function, self.time_dependent = self._constant(source), False
         elif isinstance(source, str | bytes | dict | set | frozenset) or not np.iterable(source):
@@ -207,22 +201,25 @@ class Components:
         else:
             self._function, self.time_dependent = self._from_list(list(source))
 
-    def __reduce__(self) -> tuple[Any, ...]:
+    def __getstate__(self) -> dict[str, Any]:
         # closures over the source cannot be pickled; the source can, if it is not a function or has a name in a module
-        return Components, (self._source, self.size, self.counts, self.what, self.time_dependent, self.bound)
+        return {name: value for name, value in vars(self).items() if name != "_function"}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        vars(self).update(state)
+        self._read(self.time_dependent)
 
     @property
     def takes_args(self) -> bool:
         """Whether the source is a function with args."""
         return self._form is not None and self._form.args is not None
 
-    def with_args(self, args: Pytree) -> Components:
+    def with_args(self, args: Pytree) -> Self:
         """The function with these args."""
         if not self.takes_args:
             raise InputError(f"args were given, but {self.what} takes none: write a function (m, t, args)")
-        other = object.__new__(Components)
-        for name in self.__slots__:
-            setattr(other, name, getattr(self, name))
+        other = object.__new__(type(self))
+        vars(other).update(vars(self))
         other._bind((args,))
         return other
 
@@ -248,7 +245,7 @@ class Components:
 
         self._function = unbound
 
-    def __call__(self, m: ValuesLike, t: Real = 0.0) -> Values:
+    def value(self, m: ValuesLike, t: Real = 0.0) -> Values:
         """The components at m (..., N) and t (...,): array or Jet of shape (..., count)."""
         if isinstance(m, Jet):
             time = Jet.constant(t, m.order) if is_jax(t) else t
@@ -265,9 +262,11 @@ class Components:
         if is_jax(point) or is_jax(t) or self._jax_leaves:
             # numpy functions run on Jets over JAX arrays, not on the arrays themselves
             xp = namespace(point, t, *self._jax_leaves)
-            components = self(Jet.constant(xp.asarray(point), 0), t)
+            components = self.value(Jet.constant(xp.asarray(point), 0), t)
             return components.value if isinstance(components, Jet) else xp.asarray(components)
         return self._checked(guarded(self._function, self.what, point, t), point)
+
+    __call__ = value
 
     def _expanded_by_jax(self, m: Jet, t: Any, error: TypeError) -> Jet:
         """The components at a Jet of JAX arrays, for a function written with the functions of JAX."""
@@ -286,10 +285,10 @@ class Components:
         if point.ndim == 0 or point.shape[-1] != self.size:
             raise ShapeError(f"a point has {self.size} coordinates (on its last axis), got shape {point.shape}")
         if is_exact(point) or is_traced(point) or is_traced(t):
-            self(point, t)
+            self.value(point, t)
             return
         with np.errstate(all="ignore"):
-            components = np.asarray(self(point, t))
+            components = np.asarray(self.value(point, t))
             bad = np.argwhere(~np.isfinite(components))
             if len(bad):
                 index = tuple(int(i) for i in bad[0])
@@ -305,7 +304,7 @@ class Components:
         if m.ndim == 1 or m.size == 0:
             return
         for index in {(0,) * (m.ndim - 1), tuple(n - 1 for n in m.shape[:-1])}:
-            alike, own = np.asarray(self(np.broadcast_to(m[index], m.shape).copy(), t))[index], components[index]
+            alike, own = np.asarray(self.value(np.broadcast_to(m[index], m.shape).copy(), t))[index], components[index]
             if not np.allclose(alike, own, rtol=1e-6, atol=1e-6 * float(np.abs(own).max(initial=0.0))):
                 raise ShapeError(
                     f"{self.what} of trajectory {index} depends on the points of other trajectories: coordinates are "
@@ -375,10 +374,7 @@ class Components:
 
 # -- one array or Jet from the results of functions ----------------------------------------------------
 def joined(x: Any, m: Values) -> Any:
-    """One array or Jet from a list, tuple or object array of numbers, arrays or Jets.
-
-    A list or tuple has either the components, each of shape (...,), or the rows of the trajectories as its entries.
-    """
+    """One array or Jet from an object array, or a list of the components (...,) or the rows of the trajectories."""
     if isinstance(x, Jet) or is_lazy(x):
         return x
     if isinstance(x, np.ndarray):

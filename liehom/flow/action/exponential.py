@@ -34,7 +34,15 @@ from liehom.flow.door import Field, Matrix, Representation, Scalar, defining
 from liehom.flow.series import node as recurrences
 from liehom.flow.series.arrays import as_values, in_lanes, is_exact, is_jax, is_lazy, namespace
 from liehom.flow.series.jet import Jet
-from liehom.flow.series.lie_series import cayley_magnus, dcayley_inverse, dexp, dexp_inverse, magnus, without_constant
+from liehom.flow.series.lie_series import (
+    cayley_magnus,
+    cayley_moved,
+    dcayley_inverse,
+    dexp,
+    dexp_inverse,
+    magnus,
+    without_constant,
+)
 from liehom.flow.series.node import Node
 from liehom.flow.tracing.array import Traced, entire_function, exponential_action
 
@@ -189,11 +197,8 @@ class TrueExponential(Exponential, ABC):
 
 @final
 class SeriesExponential(TrueExponential):
-    """exp(rho(x)) m by its Taylor series on the vector, in substeps of norm at most 2.
-
-    The increment is summed separately from m, so that round-off is relative to the increment. For large rho(x), and on
-    JAX arrays, exp(rho(x)) - 1 is computed as a matrix, in extended precision where the platform has it. On exact
-    numbers exp is the finite sum if rho(x) is nilpotent, else a `FieldError`.
+    """exp(rho(x)) m by its Taylor series on the vector, in substeps of norm at most 2; for large rho(x), and on JAX
+    arrays, by exp(rho(x)) - 1 as a matrix, in extended precision where the platform has it.
     """
 
     name = "exp (series)"
@@ -325,12 +330,12 @@ class Rodrigues(TrueExponential):
                 "use exponential='exp'"
             )
         super().__init__(representation)
-        self._form, self._power = identity
+        self._identity = identity
 
     name = "exp (Rodrigues)"
 
     def act(self, x: Values, m: Values) -> Values:
-        return rodrigues_action(self.infinitesimal, PowerIdentity(self._form, self._power), x, m)
+        return rodrigues_action(self.infinitesimal, self._identity, x, m)
 
 
 def rodrigues_action(infinitesimal: FieldMap, identity: PowerIdentity, x: Values, m: Values) -> Values:
@@ -370,11 +375,11 @@ def _quotients(q: Any) -> tuple[Values, Values]:
         if bool(small.all()):
             return _near(q)
         if not bool(small.any()) and bool((q > 0).all()):
-            return _far(np, q, np.sqrt(q), "sin", "cos")
+            return _far(np, np.sqrt(q), "sin", "cos")
     safe = xp.where(small, 1.0, q)
     r, turns = xp.sqrt(xp.abs(safe)), safe > 0
     # in the branch that is not taken, neither the value nor (under jax.grad) the derivative may overflow
-    round_, straight = _far(xp, safe, r, "sin", "cos"), _far(xp, safe, xp.where(turns, 0.5, r), "sinh", "cosh")
+    round_, straight = _far(xp, r, "sin", "cos"), _far(xp, xp.where(turns, 0.5, r), "sinh", "cosh")
     s, c = (xp.where(small, near, xp.where(turns, a, b)) for near, a, b in zip(_near(q), round_, straight, strict=True))
     return s, c
 
@@ -389,17 +394,14 @@ def _near(q: Values) -> tuple[Values, Values]:
     return 1 - q / 6 * (1 - q / 20 * s), 0.5 - q / 24 * (1 - q / 30 * c)
 
 
-def _far(xp: Any, q: Values, r: Values, sine: str, cosine: str) -> tuple[Values, Values]:
+def _far(xp: Any, r: Values, sine: str, cosine: str) -> tuple[Values, Values]:
     """Arrays of S and C by functions of half the angle, r = |q|^(1/2)."""
     half = getattr(xp, sine)(0.5 * r) / r
     return 2.0 * half * getattr(xp, cosine)(0.5 * r), 2.0 * half * half
 
 
 def rotation_quotients(q: Any) -> tuple[Values, Values, Values]:
-    """Arrays or traced values of S, C and D.
-
-    D is (1 - S)/q except near 0: its error relative to 1/q is round-off, which is below that of A in D A^3.
-    """
+    """S, C and D; the error of D = (1 - S)/q, relative to 1/q, is round-off, which is below that of A in D A^3."""
     if type(q) is Traced:
         sine: Values = entire_function("sinq", q / 4)
         s, c = sine * entire_function("cosq", q / 4), 0.5 * sine * sine
@@ -537,7 +539,8 @@ class Cayley(Exponential):
         x = without_constant(x, check=True)
         if self._through is not None:
             return self._through.series(self._logarithmic_jet(x), m)
-        return _rational_series(self._matrices, x, m)
+        shape = (*np.broadcast_shapes(x.shape[:-1], m.shape[:-1]), m.shape[-1])
+        return cayley_moved(self._matrices, x, m if m.shape == shape else np.broadcast_to(m, shape))
 
     def differential_inverse(self, x: Values, y: Values, terms: int) -> Values:
         """The value dcay^-1_x y = (1 - x/2) y (1 + x/2), exact."""
@@ -575,18 +578,6 @@ def _cayley_increment(matrix: Values, m: Values) -> Values:
         increment = solve(identity(wide) - wide / 2, wide @ m[..., None].astype(np.longdouble))
         return increment[..., 0].astype(right.dtype)
     return solve(identity(matrix) - matrix / 2, right)[..., 0]
-
-
-def _rational_series(action: FieldMap, x: Jet, m: Values) -> Jet:
-    """The Jet z = m + x (m + z)/2, coefficient by coefficient."""
-    start: Any = m if isinstance(m, Jet) else Jet.constant(m, x.order)
-    shape = np.broadcast_shapes(x.shape[:-1], start.shape[:-1])
-    if start.shape[:-1] != shape:
-        start = np.broadcast_to(start, (*shape, start.shape[-1]))
-    z = Jet.growing(start.value, min(x.order, start.order))
-    right: Jet = start + action(x, start + z) / 2
-    z.node.depends((right.node, 0), rule=lambda k: right.node.known[k])
-    return z
 
 
 def _exact_action(representation: Representation, matrix: Values, m: Values) -> ObjectArray:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
-from copy import copy
 from operator import matmul
 from typing import Any, TypeAlias, final, overload
 
@@ -18,7 +17,7 @@ from liehom.flow.action.frames import inner_product
 from liehom.flow.action.maps import action_map, inverse, matrices_of, solve
 from liehom.flow.door import LieAlgebra, Representation, batched_ranks, coadjoint
 from liehom.flow.series import node as recurrences
-from liehom.flow.series.arrays import as_values, is_exact, is_jax, is_traced, namespace, zeros
+from liehom.flow.series.arrays import as_values, is_exact, is_jax, is_traced, namespace, norm, zeros
 from liehom.flow.series.jet import Jet
 from liehom.flow.tracing.array import Traced
 from liehom.flow.tracing.graph import Tape
@@ -37,21 +36,15 @@ TANGENCY_RTOL = 1e-8
 
 
 @final
-class LeastNorm:
+class LeastNorm(Components):
     """The function (m, t) -> generator of minimal norm of a vector field."""
-
-    components: Components
-    time_dependent: bool
-
-    __slots__ = ("_action", "_basis", "_dimension", "_rtol", "_size", "components", "time_dependent")
 
     def __init__(
         self, representation: Representation, field: GeneratorLike, orbit_dimension: int | None = None,
         rtol: float = TANGENCY_RTOL, time_dependent: bool | None = None,
     ) -> None:  # fmt: skip
         size = representation.size
-        self.components = Components(field, size, (size,), "the vector field", time_dependent)
-        self.time_dependent = self.components.time_dependent
+        super().__init__(field, size, (size,), "the vector field", time_dependent)
         self._action = action_map(representation)
         self._basis = inner_product(representation).orthonormal_basis()
         most = min(size, representation.algebra.dimension)
@@ -61,11 +54,11 @@ class LeastNorm:
             raise InputError(f"rtol is {rtol!r}, expected a positive number")
         self._dimension, self._rtol = orbit_dimension, rtol
         flat = matrices_of(representation).reshape(len(self._basis), size * size)
-        self._size = float(np.linalg.norm(self._basis.T @ flat, axis=-1).max(initial=0.0))
+        self._largest = float(np.linalg.norm(self._basis.T @ flat, axis=-1).max(initial=0.0))
 
     def __call__(self, m: ValuesLike, t: Real = 0.0) -> Values:
         """The generator at m (..., N) and t: array or Jet of shape (..., dim g)."""
-        x = self.components(m, t)
+        x = self.value(m, t)
         value: Values = m.value if isinstance(m, Jet) else namespace(m).asarray(m)
         if is_exact(value):
             raise InputError("the generator of minimal norm is computed in floats; give psi itself for exact numbers")
@@ -99,25 +92,9 @@ class LeastNorm:
         y = recurrences.solution(recurrences.linear(image, [field]), gram, matmul, lambda a, _: first @ a)
         return Jet.from_node(recurrences.multilinear(lifted, [along, y]))
 
-    @property
-    def takes_args(self) -> bool:
-        """Whether the vector field is a function with args."""
-        return self.components.takes_args
-
-    @property
-    def bound(self) -> tuple[Pytree, ...]:
-        """(args,) that the vector field is called with, or ()."""
-        return self.components.bound
-
-    def with_args(self, args: Pytree) -> LeastNorm:
-        """A LeastNorm for the vector field with these args."""
-        other = copy(self)
-        other.components = self.components.with_args(args)
-        return other
-
     def check(self, m: ValuesLike, t: Real = 0.0) -> None:
         """Check that X is finite at initial points and tangent to their orbits."""
-        self.components.check(m, t)
+        super().check(m, t)
         self(m, t)
 
     def _columns(self, m: Values) -> Values:
@@ -134,7 +111,7 @@ class LeastNorm:
             at, field = at.astype(np.float64), field.astype(np.float64)
         left, sizes, right = xp.linalg.svd(at, full_matrices=False)
         if self._dimension is None:
-            noise = NOISE_RTOL * self._size * _length(value)[..., None]
+            noise = NOISE_RTOL * self._largest * norm(value)[..., None]
             kept = sizes > xp.maximum(RANK_RTOL * sizes[..., :1], noise)
         else:
             kept = (np.arange(sizes.shape[-1]) < self._dimension) & (sizes > 0)
@@ -148,9 +125,9 @@ class LeastNorm:
 
     def _check_tangent(self, m: Array, field: Array, up: Array) -> None:
         normal = field - (np.swapaxes(up, -1, -2) @ (up @ field[..., None]))[..., 0]
-        sizes = _length(normal)
+        sizes = norm(normal)
         # a normal component below rtol * 1e-6 |m| counts as round-off
-        bound = self._rtol * (_length(field) + 1e-6 * _length(m))
+        bound = self._rtol * (norm(field) + 1e-6 * norm(m))
         if bool(np.any(sizes > bound)):
             index = np.unravel_index(int(np.argmax(np.where(sizes > bound, sizes, -1.0))), sizes.shape)
             place = tuple(map(int, index))
@@ -160,11 +137,6 @@ class LeastNorm:
                 f"the vector field is not tangent to the orbit at m = {m[index]}{where}: X = {field[index]} has the "
                 f"normal component {normal[index]} of size {sizes[index]:.3g}",
             )
-
-
-def _length(v: Values) -> Values:
-    xp = namespace(v)
-    return xp.sqrt(xp.einsum("...i,...i->...", v, v))
 
 
 class GeneratorField(Immutable):
@@ -206,21 +178,21 @@ class GeneratorField(Immutable):
     """
 
     representation: Representation
-    source: GeneratorLike | LeastNorm | Components
+    source: GeneratorLike | Components
 
     __slots__ = ("_action", "_components", "_dimension", "_sites", "representation", "source", "time_dependent")
 
     def __init__(
-        self, representation: Representation, psi: GeneratorLike | LeastNorm | Components, *,
+        self, representation: Representation, psi: GeneratorLike | Components, *,
         time_dependent: bool | None = None, sites: tuple[int, ...] = (),
     ) -> None:  # fmt: skip
         if not isinstance(representation, Representation):
             raise InputError(f"expected a Representation, got {displayed(representation)}")
         self.representation, self.source = representation, psi
         self._action, self._dimension = action_map(representation), representation.algebra.dimension
-        self._components: Components | LeastNorm = (
+        self._components: Components = (
             psi
-            if isinstance(psi, LeastNorm | Components)
+            if isinstance(psi, Components)
             else Components(psi, representation.size, (representation.given, self._dimension), "psi", time_dependent)
         )
         self.time_dependent: bool = self._components.time_dependent
@@ -493,6 +465,17 @@ def lie_poisson_tensor(algebra: LieAlgebra, m: ValuesLike, *, sign: int = 1) -> 
     return sign * np.stack(rows, axis=-2) + 0.0
 
 
+def recorded(function: Callable[..., Any], what: str, *inputs: Traced, remedy: str = "") -> Values:
+    """The value of a user's function of traced points and times, which is to be differentiated."""
+    try:
+        return joined(guarded(function, what, *inputs), inputs[0])
+    except (LiehomError, TypeError, AttributeError, ValueError, IndexError) as error:
+        raise InputError(
+            f"{what} cannot be differentiated, because it does not run on tracers ({type(error).__name__}: {error}): "
+            f"write it with numpy functions{remedy}"
+        ) from error
+
+
 def _differentiated(H: Hamiltonian, n: int) -> tuple[Callable[[Any, Any], Values], bool]:
     """The function (m, t) -> dH(m, t), and whether it depends on t."""
     if callable(H) and not hasattr(H, "free_symbols"):
@@ -509,13 +492,7 @@ def _differentiated(H: Hamiltonian, n: int) -> tuple[Callable[[Any, Any], Values
 
     tape = Tape()
     m, t = Traced.inputs(tape, 0, n), Traced(tape, tape.input(n))
-    try:
-        energy = joined(guarded(function, "H", *((m, t) if timed else (m,))), m)
-    except (LiehomError, TypeError, AttributeError, ValueError, IndexError) as error:
-        raise InputError(
-            f"H cannot be differentiated, because it does not run on tracers ({type(error).__name__}: {error}): write "
-            "it with numpy functions, or give gradient="
-        ) from error
+    energy = recorded(function, "H", *((m, t) if timed else (m,)), remedy=", or give gradient=")
     if np.shape(energy) != ():
         raise ShapeError(f"H has shape {np.shape(energy)} at a point, expected () (sum over the last axis of m)")
     slopes = partial_derivatives(Traced(tape, energy).entry, [x.entry for x in m])

@@ -27,7 +27,7 @@ from liehom.base.disk import digest
 from liehom.base.pytrees import numbers_of
 from liehom.base.typing import Array, Real, Values
 from liehom.flow.action.components import Components
-from liehom.flow.action.field import GeneratorField, LeastNorm
+from liehom.flow.action.field import GeneratorField
 from liehom.flow.action.space import Action
 from liehom.flow.series.arrays import is_jax, is_traced
 from liehom.flow.tracing.graph import Expr, needed
@@ -309,10 +309,7 @@ class Watch(Parts):
         if callable(source) and not is_traced(start) and not is_traced(t):
             m = np.array(start if start.size <= LARGEST else start.reshape(-1, start.shape[-1])[0])
             m.flags.writeable = False
-            inner = field._components
-            function = (inner.components if isinstance(inner, LeastNorm) else inner)._function
-            time = np.full(m.shape[:-1], t)[()]
-            self._read = partial(function, m, time)
+            self._read = partial(field._components._function, m, np.full(m.shape[:-1], t)[()])
         self._known: bytes | None = None
         with suppress(Exception):  # of the user's function
             first, second = (np.asarray(self._read()).tobytes() for _ in range(2))
@@ -337,8 +334,8 @@ class Watch(Parts):
 def source_of(field: GeneratorField) -> Part:
     """The function or the expressions given as psi or as a vector field."""
     source: Any = field.source
-    while isinstance(source, Components | LeastNorm):
-        source = source.components if isinstance(source, LeastNorm) else source._source
+    while isinstance(source, Components):
+        source = source._source
     return source
 
 

@@ -106,10 +106,7 @@ def inner_product(representation: Representation) -> InnerProduct:
 
 
 def exact_gram_matrix(representation: Representation) -> Matrix:
-    """The Gram matrix of the inner product on g over the field of the representation.
-
-    The candidates of `inner_product` are tried, except those with a centre or a defining representation.
-    """
+    """The Gram matrix of the first exact candidate of `inner_product`, without centre or defining representation."""
     field, size = representation.field, representation.size**2
     flat = field.stack_rows([a.reshape(1, size) for a in representation.matrices], size)
     turned = field.stack_rows([a.T.reshape(1, size) for a in representation.matrices], size)

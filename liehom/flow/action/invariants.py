@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Hashable, Iterable, Sequence
+from collections.abc import Hashable, Iterable, Sequence
 from fractions import Fraction
 from itertools import combinations, combinations_with_replacement, islice
 from math import lcm
@@ -44,9 +44,8 @@ def monomials(size: int, degree: int) -> IntegerArray:
 
 
 def invariant_polynomials(matrices: Array, degree: int) -> Array:
-    """A basis of the invariant polynomials, by their coefficients of the `monomials`, shape (count of them, k).
-
-    Random elements generate the algebra, but for some nilpotent ones: the results are to be checked.
+    """A basis of the invariant polynomials, by their coefficients of the `monomials`, shape (count of them, k); to be
+    checked, as random elements do not generate some nilpotent algebras.
     """
     n = matrices.shape[-1]
     factors = monomials(n, degree)
@@ -127,16 +126,13 @@ class Quadrics:
         self.size: int = size
         self.blocks = blocks
 
-    def levels(self, m: Values) -> Values:
-        """The values m^T Q_b m of the forms, shape (..., number of blocks)."""
-        return namespace(m).stack([self._value(block, self._part(block, m)) for block in self.blocks], axis=-1)
+    def numbers(self, points: Values) -> list[Values]:
+        """The values m^T Q_b m of the forms at points (..., N), each of shape (...,)."""
+        return [self._value(block, self._part(block, points)) for block in self.blocks]
 
-    def project(self, m: Values, levels: Values) -> Values:
-        """The point m + lambda Q m of the level sets with the smallest |lambda|, for m (..., N) near them.
-
-        On a sphere it is the multiple of m that has the right norm.
-        """
-        parts = [self._projected(block, self._part(block, m), levels[..., b]) for b, block in enumerate(self.blocks)]
+    def project(self, m: Values, numbers: Sequence[Values]) -> Values:
+        """The point m + lambda Q m of the level sets with the smallest |lambda|, for m (..., N) near them."""
+        parts = [self._projected(block, self._part(block, m), c) for block, c in zip(self.blocks, numbers, strict=True)]
         if len(parts) == 1 and len(self.blocks[0].indices) == self.size:
             return parts[0]
         columns: list[Any] = [m[..., i] for i in range(self.size)]
@@ -214,10 +210,7 @@ def _with_form(matrices: Array, indices: list[int]) -> Block | None:
 
 
 def invariant_form(matrices: Array) -> Array | None:
-    """An invariant symmetric form Q, of largest entry 1, by the kernel of Q -> A^T Q + Q A; None if there is none.
-
-    Of several forms it is the one nearest to the scalar product.
-    """
+    """The invariant symmetric form nearest to the scalar product, of largest entry 1; None if there is none."""
     n = matrices.shape[-1]
     basis = invariant_polynomials(matrices, 2)
     if not basis.shape[1]:
@@ -229,8 +222,7 @@ def invariant_form(matrices: Array) -> Array | None:
     form = np.zeros((n, n))
     form[first, second] = nearest
     form = (form + form.T) / np.abs(form + form.T).max()
-    near = np.array([float(Fraction(float(x)).limit_denominator(DENOMINATOR)) for x in form.ravel()]).reshape(n, n)
-    form = near if np.abs(form - near).max() <= FORM_RTOL else form
+    form = _rounded(form, DENOMINATOR, FORM_RTOL)
     defect = np.abs(np.swapaxes(matrices, 1, 2) @ form + form @ matrices).max()
     return form if defect <= FORM_RTOL else None
 
@@ -359,10 +351,10 @@ def times(m: Values, form: Array) -> Values:
     return m @ form
 
 
-def _rounded(x: Array) -> Array:
+def _rounded(x: Array, denominator: int = MAX_DENOMINATOR, rtol: float = COEFFICIENT_RTOL) -> Array:
     """x with entries that are nearly rational made so."""
-    near = np.array([float(Fraction(float(v)).limit_denominator(MAX_DENOMINATOR)) for v in x.ravel()]).reshape(x.shape)
-    return near if np.abs(x - near).max(initial=0.0) <= COEFFICIENT_RTOL * np.abs(x).max(initial=0.0) else x
+    near = np.array([float(Fraction(float(v)).limit_denominator(denominator)) for v in x.ravel()]).reshape(x.shape)
+    return near if np.abs(x - near).max(initial=0.0) <= rtol * np.abs(x).max(initial=0.0) else x
 
 
 def _map(table: Array) -> FieldMap:
@@ -474,16 +466,8 @@ class InvariantLanding(ABC):
         """Whether F lands on the orbits of all points (..., n)."""
         return all(np.isfinite(v).all() for v in cast("list[Array]", self.numbers(points)))
 
-    def functions(self) -> list[Callable[[Array], Array]]:
-        """The numbers as functions of the points (L, n), one by one."""
-        count = len(self.numbers(np.ones((1, self.invariants.size))))
-        return [lambda points, i=i: cast(Array, self.numbers(points)[i]) for i in range(count)]  # type: ignore[misc]
-
     def landed(self, m: Values, numbers: Sequence[Values], steps: int = 2) -> tuple[Values, Values | BooleanArray]:
-        """The points of the orbits near m (..., n), and whether there is one, of shape (...,).
-
-        F is applied `steps` times, and further where it still moves points.
-        """
+        """The points of the orbits near m (..., n), by F at least so often, and whether there is one, (...,)."""
         start, before = m, m
         with np.errstate(all="ignore"):
             for _ in range(steps):

@@ -9,14 +9,13 @@ from typing import Any, Literal, TypeVar, final
 
 import numpy as np
 
-from liehom.base.errors import InputError, ShapeError, SingularError
+from liehom.base.errors import InputError, SingularError
 from liehom.base.typing import Array, IntegerArray, ObjectArray, Values, ValuesLike
 from liehom.flow.door import Field, Matrix, Representation, Scalar, copies_of
-from liehom.flow.series import node as recurrences
-from liehom.flow.series.arrays import across_lanes, in_lanes, is_exact, is_jax, is_lazy, namespace, zeros
+from liehom.flow.series import arrays
+from liehom.flow.series.arrays import NumbersLike, across_lanes, in_lanes, is_exact, is_jax, namespace
 from liehom.flow.series.jet import Jet
-from liehom.flow.series.lie_series import Bilinear
-from liehom.flow.series.node import Node
+from liehom.flow.series.lie_series import Bilinear, values_of
 from liehom.flow.tracing.array import Traced
 from liehom.flow.tracing.graph import Expr, Tape
 
@@ -40,25 +39,22 @@ COLUMN_OVERHEAD, ROW_COST, ENTRIES_PER_COST = 2000, 20, 8
 
 
 @final
-class FieldMap:
+class FieldMap(Bilinear):
     """A bilinear map with coefficients in a field: floats for float arguments, exact for exact ones."""
 
-    shape: tuple[int, int, int]
-
     __slots__ = (
-        "_entries", "_exact", "_field", "_floating", "_floats", "_many", "_pulled", "_rest", "_root", "_table",
-        "_turned", "shape",
+        "_entries", "_exact", "_field", "_floats", "_many", "_pulled", "_rest", "_root", "_table", "_turned",
     )  # fmt: skip
 
     def __init__(self, entries: Entries, shape: tuple[int, int, int], field: Field) -> None:
-        self._entries, self._field, self.shape = list(entries), field, shape
+        self._entries, self._field = list(entries), field
         rounded = [field.to_float(v) for *_, v in self._entries]
         if not np.isfinite(rounded).all():
             raise InputError("a bilinear map has numbers beyond the range of floats; scale them")
         places = [entry[:3] for entry in self._entries]
         # products with coefficient 1 come first: `_by_columns` starts each sum with one that needs no factor
         self._floats = sorted(((*p, v) for p, v in zip(places, rounded, strict=True)), key=lambda entry: entry[3] != 1)
-        self._floating = Bilinear(self._floats, shape)
+        super().__init__(self._floats, shape)
         rests = [remainder(field, v, near) for (*_, v), near in zip(self._entries, rounded, strict=True)]
         left = [(*p, r) for p, r in zip(places, rests, strict=True) if r != 0]
         self._rest = Bilinear(left, shape) if left else None
@@ -71,59 +67,31 @@ class FieldMap:
         self._turned: Array | None = None
         self._pulled: FieldMap | None = None
         self._root: Array | None = None
-        self._table: Array | None = np.ascontiguousarray(self._floating.tensor().reshape(a, b * c)) if dense else None
+        self._table: Array | None = np.ascontiguousarray(self.tensor().reshape(a, b * c)) if dense else None
 
     @property
     def scale(self) -> float:
         """The largest modulus of a coefficient."""
         return max((abs(value) for *_, value in self._floats), default=0.0)
 
-    def tensor(self) -> Array:
-        """The coefficients v_ijk as floats, shape (a, b, c)."""
-        return self._floating.tensor()
-
-    def __call__(self, x: ValuesLike, y: ValuesLike) -> Values:
-        """B(x, y) for x (..., a) and y (..., b): array or Jet of shape (..., c)."""
-        if isinstance(x, Jet):
-            if isinstance(y, Jet):
-                self._check(x.shape, y.shape)
-                return Jet.from_node(recurrences.bilinear(self._apply, x.node, y.node, self._zero(x.node, y.node)))
-            right = _array(y)
-            self._check(x.shape, right.shape)
-            return Jet.from_node(recurrences.linear(lambda v: self._apply(v, right), [x.node]))
-        left = _array(x)
-        if isinstance(y, Jet):
-            self._check(left.shape, y.shape)
-            return Jet.from_node(recurrences.linear(lambda v: self._apply(left, v), [y.node]))
-        right = _array(y)
-        self._check(left.shape, right.shape)
-        return self._apply(left, right)
-
-    def _zero(self, x: Node, y: Node) -> Values | None:
-        """Zeros of the shape of B(x, y) if x or y is 0 at 0 and both are numpy arrays of one dtype, else None."""
-        a, b = x.value, y.value
-        if (x.known[0] is None or y.known[0] is None) and type(a) is type(b) is np.ndarray and a.dtype == b.dtype:
-            return zeros(a, (*np.broadcast_shapes(a.shape[:-1], b.shape[:-1]), self.shape[2])) if a.size else None
-        return None
-
-    def left(self, x: ValuesLike) -> Values:
+    def left(self, x: ValuesLike | NumbersLike) -> Values:
         """The matrix of y -> B(x, y), shape (..., c, b)."""
-        x = x if isinstance(x, Jet) else _array(x)
-        self._check(x.shape, (self.shape[1],))
-        if self._table is not None and type(x) is np.ndarray and x.dtype == np.float64:
-            return (x @ self._table).reshape(*x.shape[:-1], self.shape[1], self.shape[2]).swapaxes(-1, -2)
-        return self._matrix(x, "left")
+        v = values_of(x)
+        self._check(v.shape, (self.shape[1],))
+        if self._table is not None and type(v) is np.ndarray and v.dtype == np.float64:
+            return (v @ self._table).reshape(*v.shape[:-1], self.shape[1], self.shape[2]).swapaxes(-1, -2)
+        return self._matrix(v, "left")
 
-    def right(self, y: ValuesLike) -> Values:
+    def right(self, y: ValuesLike | NumbersLike) -> Values:
         """The matrix of x -> B(x, y), shape (..., c, a)."""
-        y = y if isinstance(y, Jet) else _array(y)
-        self._check((self.shape[0],), y.shape)
-        if self._table is not None and type(y) is np.ndarray and y.dtype == np.float64:
+        v = values_of(y)
+        self._check((self.shape[0],), v.shape)
+        if self._table is not None and type(v) is np.ndarray and v.dtype == np.float64:
             if self._turned is None:
                 table = self._table.reshape(self.shape).transpose(1, 2, 0)
                 self._turned = np.ascontiguousarray(table.reshape(self.shape[1], -1))
-            return (y @ self._turned).reshape(*y.shape[:-1], self.shape[2], self.shape[0])
-        return self._matrix(y, "right")
+            return (v @ self._turned).reshape(*v.shape[:-1], self.shape[2], self.shape[0])
+        return self._matrix(v, "right")
 
     def right_transposed(self, y: ValuesLike, z: ValuesLike) -> Values:
         """R^T z for the matrix R of x -> B(x, y): the transpose of ``right(y)`` on z (..., c), shape (..., a)."""
@@ -148,7 +116,7 @@ class FieldMap:
     def frobenius_norms(self, x: Values) -> Array:
         """The Frobenius norms of the matrices ``left(x)``, shape (...,), for x (..., a), without these matrices."""
         if self._root is None:
-            table = self._floating.tensor().reshape(self.shape[0], self.shape[1] * self.shape[2])
+            table = self.tensor().reshape(self.shape[0], self.shape[1] * self.shape[2])
             values, vectors = np.linalg.eigh(table @ table.T)
             self._root = vectors * np.sqrt(np.maximum(values, 0.0))
         turned = across_lanes(x, self._root)
@@ -161,7 +129,7 @@ class FieldMap:
             return np.swapaxes(self._traced(*pair), -1, -2)
         if is_exact(x.value if isinstance(x, Jet) else x):
             return getattr(self._exactly(), side)(x)
-        matrix: Values = getattr(self._floating, side)(x)
+        matrix: Values = getattr(super(), side)(x)
         return matrix if self._rest is None or x.dtype != np.longdouble else matrix + getattr(self._rest, side)(x)
 
     def _apply(self, x: Values, y: Any) -> Values:
@@ -176,12 +144,7 @@ class FieldMap:
             return self._traced(x, y)
         if is_exact(x) or is_exact(y):
             return self._exactly()(x, y)
-        if self._table is None:
-            result: Values = self._floating(x, y)
-        else:
-            xp = namespace(x, y)
-            matrix = (x @ xp.asarray(self._table, dtype=x.dtype)).reshape(*x.shape[:-1], *self.shape[1:])
-            result = xp.einsum("...b,...bc->...c", y, matrix)
+        result: Values = super()._apply(x, y)
         return result if self._rest is None or result.dtype != np.longdouble else result + self._rest(x, y)
 
     def _by_columns(self, x: Array, y: Array) -> Array:
@@ -230,18 +193,9 @@ class FieldMap:
         return tape.summed(len(copies) * self.shape[2], row, factors, *operands)
 
     def _exactly(self) -> Bilinear:
-        if not self._field.exact:
-            return self._floating
         if self._exact is None:
-            self._exact = Bilinear(self._entries, self.shape)
+            self._exact = Bilinear(self._entries if self._field.exact else self._floats, self.shape)
         return self._exact
-
-    def _check(self, x: tuple[int, ...], y: tuple[int, ...]) -> None:
-        a, b, _ = self.shape
-        if not x or not y or x[-1] != a or y[-1] != b:
-            raise ShapeError(
-                f"arguments of shapes {x} and {y}, expected (..., {a}) and (..., {b}), components on the last axis"
-            )
 
 
 @final
@@ -336,13 +290,6 @@ def bracket_map(representation: Representation) -> FieldMap:
     constants = representation.algebra.structure_constants()
     entries = [entry for i, j, k, value in constants for entry in ((i, j, k, value), (j, i, k, -value))]
     return FieldMap(entries, (representation.algebra.dimension,) * 3, representation.field)
-
-
-def _array(x: ValuesLike) -> Any:
-    if (type(x) is np.ndarray and x.dtype.kind == "f") or is_lazy(x):
-        return x
-    array = np.asarray(x)
-    return array.astype(np.float64) if array.dtype.kind in "iub" else array
 
 
 # Functions of matrices (..., n, n) for exponentials: exp(a) - 1, 2 artanh(a/2), and linear systems.
@@ -501,18 +448,11 @@ def _odd_horner(_: int, state: tuple[Values, Values, Values, int]) -> tuple[Valu
 
 
 def solve(a: Values, b: Values) -> Values:
-    """The solution x of a x = b, for b of shape (..., n, k); in extended precision by refinement of float64."""
-    xp = namespace(a, b)
+    """The solution x of a x = b, for b of shape (..., n, k)."""
     try:
-        if xp is not np or np.result_type(a, b) != np.longdouble:
-            return xp.linalg.solve(a, b)
-        rough = np.linalg.inv(a.astype(np.float64)).astype(np.longdouble)
+        return arrays.solve(a, b)
     except np.linalg.LinAlgError:
         raise SingularError("a linear system is singular: 1 - x/2, for a Cayley transform of x") from None
-    x: Values = rough @ b
-    for _ in range(3):
-        x = x + rough @ (b - a @ x)
-    return x
 
 
 def inverse(a: Values) -> Values:

@@ -7,7 +7,6 @@ import platform
 import re
 import time
 import warnings
-from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -24,6 +23,7 @@ from liehom.flow.convergence.orders import (
     MARGIN,
     NAN,
     MeasuredTable,
+    decreasing,
     errors_of,
     floor_of,
     reference_for,
@@ -68,69 +68,53 @@ class Outcome(NamedTuple):
     message: str = ""
 
 
-class Compared(ABC):
+@dataclass(frozen=True, slots=True)
+class Compared:
     """A method of a comparison, for one field, time span and initial point."""
 
     label: str
+    run: Callable[[Setting], Outcome]  # to the end; raises `ConvergenceError` if it fails
     compiles: bool = False
     adaptive_only: bool = False  # whether it has no fixed step sizes
 
-    @abstractmethod
-    def run(self, setting: Setting) -> Outcome:
-        """The outcome of a run to the end; raises `ConvergenceError` if it fails."""
 
-
-@final
-class StepMethod(Compared):
+def step_method(label: str, propagator: Propagator, span: Span, start: Array, max_steps: int) -> Compared:
     """A step of the library, as a `Propagator` that is made once."""
 
-    def __init__(
-        self, label: str, step: StepLike | None, propagator: Propagator, span: Span, start: Array, max_steps: int
-    ) -> None:
-        self.label = label or (DEFAULT if step is None else step if isinstance(step, str) else repr(step))
-        self.compiles = propagator.engine.name != "numpy"
-        self._propagator, self._span, self._start, self._max_steps = propagator, span, start, max_steps
-
-    def run(self, setting: Setting) -> Outcome:
+    def run(setting: Setting) -> Outcome:
         size, tolerance = setting
         options: dict[str, Any] = {"dt": size} if tolerance is None else {"rtol": tolerance, "atol": tolerance}
         with without_order_warning():
-            run = self._propagator(
-                self._span, self._start, t_eval=[self._span[1]], max_steps=self._max_steps, **options
-            )
-        if run.status == -1:
-            raise ConvergenceError(run.message)
-        lost = run.message if run.status == -2 else ""
-        return Outcome(run.y[..., -1], int(run.nfev), int(np.max(run.n_steps)), lost)
+            solution = propagator(span, start, t_eval=[span[1]], max_steps=max_steps, **options)
+        if solution.status == -1:
+            raise ConvergenceError(solution.message)
+        lost = solution.message if solution.status == -2 else ""
+        return Outcome(solution.y[..., -1], int(solution.nfev), int(np.max(solution.n_steps)), lost)
+
+    return Compared(label, run, compiles=propagator.engine.name != "numpy")
 
 
-@final
-class ScipyMethod(Compared):
+def scipy_method(label: str, name: str, field: GeneratorField, span: Span, start: Array) -> Compared:
     """A method of scipy's solve_ivp on m' = X(m, t), all trajectories of an ensemble as one system."""
 
-    adaptive_only = True
+    def rates(t: float, y: Array) -> Array:
+        return np.asarray(field.vector(y.reshape(start.shape), np.full(start.shape[:-1], t))).reshape(-1)
 
-    def __init__(self, label: str, name: str, field: GeneratorField, span: Span, start: Array) -> None:
-        self.label = label or f"scipy {name}"
-        self._name, self._field, self._span, self._start = name, field, span, start.astype(float)
-
-    def run(self, setting: Setting) -> Outcome:
+    def run(setting: Setting) -> Outcome:
         from scipy.integrate import solve_ivp
 
-        shape, field = self._start.shape, self._field
-
-        def rates(t: float, y: Array) -> Array:
-            return np.asarray(field.vector(y.reshape(shape), np.full(shape[:-1], t))).reshape(-1)
-
-        span = float(self._span[0]), float(self._span[1])
         options = {"rtol": setting.tolerance, "atol": setting.tolerance}
         with warnings.catch_warnings(record=True) as said:  # for example that the tolerance is replaced
             warnings.simplefilter("always")
-            run = solve_ivp(rates, span, self._start.reshape(-1), self._name, **options)
-        if not run.success:
-            raise ConvergenceError(run.message)
+            solution = solve_ivp(
+                rates, (float(span[0]), float(span[1])), start.astype(float).reshape(-1), name, **options
+            )
+        if not solution.success:
+            raise ConvergenceError(solution.message)
         message = " ".join(dict.fromkeys(str(warning.message) for warning in said))
-        return Outcome(run.y[:, -1].reshape(shape), int(run.nfev), len(run.t) - 1, message)
+        return Outcome(solution.y[:, -1].reshape(start.shape), int(solution.nfev), len(solution.t) - 1, message)
+
+    return Compared(label, run, adaptive_only=True)
 
 
 def compared_methods(
@@ -151,9 +135,11 @@ def compared_methods(
     for label, method in labelled:
         peer = _PEER.fullmatch(method.strip()) if isinstance(method, str) else None
         if peer is None:
-            compared.append(StepMethod(label, method, propagator(method), span, start, max_steps))
+            label = label or (DEFAULT if method is None else method if isinstance(method, str) else repr(method))
+            compared.append(step_method(label, propagator(method), span, start, max_steps))
         elif peer[1].lower() in PEERS:
-            compared.append(ScipyMethod(label, PEERS[peer[1].lower()], field, span, start))
+            name = PEERS[peer[1].lower()]
+            compared.append(scipy_method(label or f"scipy {name}", name, field, span, start))
         else:
             raise InputError(f"no method of scipy is called {displayed(peer[1])}; known: {', '.join(PEERS.values())}")
     labels = [method.label for method in compared]
@@ -410,7 +396,7 @@ def work_precision(
     if lazy := [method.label for method in chosen if not any(method is m for m, _ in runs)]:
         raise InputError(f"{', '.join(lazy)}: methods of scipy have no fixed step sizes, give tolerances too")
     exact = _exact(field, start, span, reference, orbit=not (field.time_dependent and clock == "nominal"))
-    rows = _finished(runs, lambda method, setting: _row(method, setting, exact, int(repeats)), progress)
+    rows = _finished(runs, partial(_row, exact=exact, repeats=int(repeats)), progress)
     return WorkPrecisionTable(
         rows=sorted_rows(rows, [method.label for method in chosen]),
         t_span=(float(span[0]), float(span[1])),
@@ -425,35 +411,20 @@ def work_precision(
 
 def _settings(dts: Iterable[float], tolerances: Iterable[float]) -> list[Setting]:
     """Different settings, step sizes first, each in decreasing order."""
-    settings: list[Setting] = []
-    for name, values in (("dts", dts), ("tolerances", tolerances)):
-        try:
-            numbers = sorted({float(x) for x in values}, reverse=True)
-        except (TypeError, ValueError):
-            numbers = [NAN]
-        if not all(0 < x < math.inf for x in numbers):
-            raise InputError(f"{name} is {values!r}, expected positive numbers, e.g. [0.1, 0.05]")
-        settings += [Setting(dt=x) if name == "dts" else Setting(tolerance=x) for x in numbers]
+    settings = [Setting(dt=x) for x in decreasing("dts", dts, "positive numbers")]
+    settings += [Setting(tolerance=x) for x in decreasing("tolerances", tolerances, "positive numbers")]
     if not settings:
         raise InputError("give step sizes, e.g. dts=[0.2, 0.1, 0.05], or tolerances=[1e-3, 1e-6, 1e-9], or both")
     return settings
 
 
 class _Exact(NamedTuple):
-    """The exact points at the end, their accuracy, and the solution as a series if there is one."""
+    """The exact points at the end, their accuracy, how they were found, and the errors of other points."""
 
     points: Array
     accuracy: float
     text: str
-    end: np.floating[Any]
-    series: Reference | None
-    orbit: bool
-
-    def errors(self, points: Array) -> tuple[float, float]:
-        """(orbit error, trajectory error)."""
-        if self.series is not None:
-            return errors_of(self.series, points, self.end, orbit=self.orbit)
-        return NAN, root_mean_square(np.linalg.norm(points - self.points, axis=-1))
+    errors: Callable[[Array], tuple[float, float]]  # of the orbit and of the trajectory
 
 
 def _exact(
@@ -467,6 +438,10 @@ def _exact(
     """The reference: the given one, Taylor series, or two runs of DOP853."""
     first, last = span
     points: Any
+
+    def apart(reached: Array) -> tuple[float, float]:
+        return NAN, root_mean_square(np.linalg.norm(reached - points, axis=-1))
+
     if isinstance(reference, tuple):
         try:
             points, accuracy = np.asarray(reference[0], dtype=np.longdouble), float(reference[1])
@@ -476,17 +451,17 @@ def _exact(
             raise InputError(f"reference is {displayed(reference)}, expected a Reference or (points, accuracy)")
         if points.shape != start.shape:
             raise ShapeError(f"the reference has points of shape {points.shape}, y0 has shape {start.shape}")
-        return _Exact(points, accuracy, "given points", last, None, False)
+        return _Exact(points, accuracy, "given points", apart)
     try:
         series = reference_for(field, start, first, reference)
         points, accuracy = series(last), float(np.max(series.accuracy(last)))
         text = "given series" if reference is not None else "Taylor series in extended precision"
-        return _Exact(points, accuracy, text, last, series, orbit)
+        return _Exact(points, accuracy, text, partial(errors_of, series, end=last, orbit=orbit))
     except SeriesError:
-        solver = ScipyMethod("", "DOP853", field, span, start)
+        solver = scipy_method("", "DOP853", field, span, start)
         points, second = (solver.run(Setting(tolerance=x)).points for x in (FINEST, SECOND))
         accuracy = float(np.max(np.linalg.norm(points - second, axis=-1)))
-        return _Exact(points, accuracy, f"scipy DOP853 with tolerance {FINEST:.0e}", last, None, False)
+        return _Exact(points, accuracy, f"scipy DOP853 with tolerance {FINEST:.0e}", apart)
 
 
 def _finished(
@@ -527,13 +502,9 @@ def _row(method: Compared, setting: Setting, exact: _Exact, repeats: int) -> Wor
 
 def timed_run(method: Compared, setting: Setting, repeats: int) -> tuple[Outcome, float, float]:
     """Outcome of a run, and its CPU and wall-clock time; the first call counts only if the method compiles nothing."""
-    outcome, cpu, wall = timed(lambda: method.run(setting), 1)
     if method.compiles:
-        return (outcome, *timed(lambda: method.run(setting), repeats)[1:])
-    if repeats > 1 and cpu < ENOUGH:
-        again = timed(lambda: method.run(setting), repeats - 1)
-        cpu, wall = min(cpu, again[1]), min(wall, again[2])
-    return outcome, cpu, wall
+        method.run(setting)
+    return timed(lambda: method.run(setting), repeats)
 
 
 def timed(action: Callable[[], Made], repeats: int) -> tuple[Made, float, float]:

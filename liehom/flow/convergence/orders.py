@@ -45,10 +45,7 @@ class MeasuredTable(DisplayedTable, ABC):
         return str(self)
 
     def to_csv(self, path: str | os.PathLike[str] | None = None, *, force: bool = False) -> str:
-        """Comma-separated values with a line of names, all digits, and empty entries for NaN and None.
-
-        They are also written to a path if one is given; `force` replaces an existing file.
-        """
+        """Comma-separated values, empty for NaN and None, also written to a path; `force` replaces a file there."""
         text = comma_separated([["" if x is None or x != x else x for x in line] for line in self._lines()])
         if path is not None:
             check_target(path, force=force)
@@ -287,7 +284,7 @@ def observed_order(
     (True, True)
     """
     step, start = as_step(step), points_of(y0)
-    sizes = _sizes(dts)
+    sizes = decreasing("dts", dts, "two or more different positive step sizes", 2)
     first, last = span_of(t_span, start.dtype)
     if sizes[0] > abs(last - first):
         raise InputError(f"the step size {sizes[0]} is longer than t_span = {t_span!r}: it would be shortened")
@@ -321,12 +318,12 @@ def observed_order(
     )
 
 
-def _sizes(dts: Iterable[float]) -> tuple[float, ...]:
-    """Different step sizes in decreasing order, at least two."""
+def decreasing(name: str, values: Iterable[float], expected: str, least: int = 0) -> tuple[float, ...]:
+    """Different positive numbers in decreasing order, at least a number of them."""
     try:
-        sizes = sorted({float(h) for h in dts}, reverse=True)
+        numbers = sorted({float(x) for x in values}, reverse=True)
     except (TypeError, ValueError):
-        sizes = []
-    if len(sizes) < 2 or not all(0 < h < math.inf for h in sizes):
-        raise InputError(f"dts is {dts!r}, expected two or more different positive step sizes, e.g. [0.1, 0.05]")
-    return tuple(sizes)
+        numbers = [NAN]
+    if len(numbers) < least or not all(0 < x < math.inf for x in numbers):
+        raise InputError(f"{name} is {values!r}, expected {expected}, e.g. [0.1, 0.05]")
+    return tuple(numbers)

@@ -336,22 +336,19 @@ def orbit_distance(reference: Reference, y: npt.ArrayLike, t: npt.ArrayLike) -> 
 
 def _arguments(reference: Reference, y: npt.ArrayLike, t: npt.ArrayLike) -> tuple[Array, Array]:
     """Points and times, checked and broadcast."""
-    dtype, lead = reference.start.dtype, reference.start.shape[:-1]
-    points = points_of(y).astype(dtype)
+    points, times = points_of(y).astype(reference.start.dtype), reference._times(t)
     if points.shape[-1:] != reference.start.shape[-1:]:
         raise ShapeError(f"a point has {reference.start.shape[-1]} coordinates, got shape {points.shape}")
     try:
-        shape = np.broadcast_shapes(points.shape[:-1], np.shape(t), lead)
-        times = np.broadcast_to(np.asarray(t).astype(dtype, casting="same_kind"), shape)
-    except TypeError:
-        raise InputError(f"t is not a number: {t!r}") from None
+        shape = np.broadcast_shapes(points.shape[:-1], times.shape)
     except ValueError:
         raise ShapeError(
-            f"points of shape {points.shape}, times of shape {np.shape(t)} and the ensemble {lead} do not fit together"
+            f"points of shape {points.shape}, times of shape {np.shape(t)} and the ensemble "
+            f"{reference.start.shape[:-1]} do not fit together"
         ) from None
     if not bool(np.isfinite(points).all()):
         raise InputError("a point is not finite: the distance from an orbit needs finite points")
-    return np.broadcast_to(points, (*shape, points.shape[-1])), times
+    return np.broadcast_to(points, (*shape, points.shape[-1])), np.broadcast_to(times, shape)
 
 
 def _distance(reference: Reference, y: Array, s: Array) -> Array:

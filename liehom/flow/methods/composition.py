@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any, TypeAlias, final
 
 import numpy as np
@@ -152,7 +153,8 @@ class Splitting(Step):
         require_exponential(action, "Splitting")
         if not self._checked and type(m) is np.ndarray:
             self.prepare(action, psi, m, t[..., 0])
-        return _SplitStep(action, self._functions(action, psi), m, t)
+        walk = partial(_walk, action, self._functions(action, psi), m, t)
+        return LocalStep(action, m, lambda h: tuple(walk(h)[0]), point=lambda h: walk(h)[1])
 
     def prepare(self, action: Action, psi: Generator, m: Values, t: Values) -> Splitting:
         """The step, after a check of its parts at the points m (..., N)."""
@@ -170,30 +172,16 @@ class Splitting(Step):
         return "Splitting()" if self.parts is None else f"Splitting({len(self.parts)} parts)"
 
 
-@final
-class _SplitStep(LocalStep):
-    """The step at a point: half steps of the parts in order, and half steps in reverse order."""
-
-    def __init__(self, action: Action, parts: Sequence[Part], m: Values, t: Values) -> None:
-        super().__init__(action, m)
-        self.parts, self.t = parts, t
-
-    def factors(self, h: Values) -> tuple[Values, ...]:
-        return tuple(self._walk(h)[0])
-
-    def point(self, h: Values) -> Values:
-        return self._walk(h)[1]
-
-    def _walk(self, h: Values) -> tuple[list[Values], Values]:
-        middle = self.t + h / 2
-        *first, last = self.parts
-        halves: list[tuple[Part, Any]] = [(p, h / 2) for p in first]
-        m, factors = self.m, []
-        for part, weight in [*halves, (last, h), *reversed(halves)]:
-            x = weight * part(m, middle)
-            m = self.action.act(x, m)
-            factors.append(x)
-        return factors, m
+def _walk(action: Action, parts: Sequence[Part], m: Values, t: Values, h: Values) -> tuple[list[Values], Values]:
+    """Factors and point of a step of size h: half steps of the parts in order, and half steps in reverse order."""
+    *first, last = parts
+    halves: list[tuple[Part, Any]] = [(p, h / 2) for p in first]
+    factors = []
+    for part, weight in [*halves, (last, h), *reversed(halves)]:
+        x = weight * part(m, t + h / 2)
+        m = action.act(x, m)
+        factors.append(x)
+    return factors, m
 
 
 def _component(psi: Generator, unit: Values) -> Part:

@@ -47,14 +47,8 @@ class Euler(OneExponential):
 
     order = 1
 
-    def generator(self, action: Action, psi: Generator, m: Values, t: Values, h: Values) -> Values:
-        return h * psi(m, t)
-
     def at(self, action: Action, psi: Generator, m: Values, t: Values, *, error_terms: int = 0) -> LocalStep:
-        velocity = psi(m, t)  # once for all h
-        local = LocalStep(action, m, lambda h: (h * velocity,))
-        local.quick = True
-        return local
+        return _along_series(action, m, [psi(m, t)])
 
 
 @final
@@ -131,7 +125,7 @@ class LieTaylor(OneExponential):
             coefficients = _fitted(action, psi, flow, m, self.order)
         else:
             coefficients = [series.coefficient(k) for k in range(1, self.order + 1)]
-        local = _Polynomial(action, m, coefficients)
+        local = _along_series(action, m, coefficients)
         if error_terms:
             flow.note(local, self.order + error_terms)
             step = step_series(action, local, m, self.order + error_terms)
@@ -142,18 +136,11 @@ class LieTaylor(OneExponential):
         return local
 
 
-@final
-class _Polynomial(LocalStep):
-    """xi(h) = xi_1 h + ... + xi_n h^n."""
-
-    quick = True
-
-    def __init__(self, action: Action, m: Values, coefficients: Sequence[Values]) -> None:
-        super().__init__(action, m)
-        self.coefficients = coefficients
-
-    def factors(self, h: Values) -> Factors:
-        return (polynomial([None, *self.coefficients], h),)
+def _along_series(action: Action, m: Values, coefficients: Sequence[Values]) -> LocalStep:
+    """The step xi(h) = xi_1 h + ... + xi_n h^n."""
+    local = LocalStep(action, m, lambda h: (polynomial([None, *coefficients], h),))
+    local.quick = True
+    return local
 
 
 def _fitted(action: Action, psi: Generator, flow: Flow, m: Values, order: int) -> list[Values]:
@@ -162,7 +149,7 @@ def _fitted(action: Action, psi: Generator, flow: Flow, m: Values, order: int) -
     coefficients: list[Values] = []
     for k in range(1, order + 1):
         guess = flow.psi(k - 1) / k
-        step = step_series(action, _Polynomial(action, m, [*coefficients, guess]), m, k)
+        step = step_series(action, _along_series(action, m, [*coefficients, guess]), m, k)
         missing = flow.point(k) - step.coefficient(k)
         coefficients.append(guess + least_generator(frame, missing))
     return coefficients

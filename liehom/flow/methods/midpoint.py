@@ -14,7 +14,7 @@ from liehom.base.typing import Array, Values
 from liehom.flow.action.exponential import TrueExponential
 from liehom.flow.action.space import Action
 from liehom.flow.door import Representation, adjoint, coadjoint, copies_of, defining, so
-from liehom.flow.series.arrays import is_jax, zeros
+from liehom.flow.series.arrays import is_jax, norm, zeros
 from liehom.flow.series.jet import Jet
 from liehom.flow.steps.implicit import reach_of, solve_implicitly
 from liehom.flow.steps.step import Generator, LocalStep, OneExponential, Step
@@ -240,11 +240,11 @@ def _spherical_point(psi: Generator, m: Values, t: Values, h: Values, reach: flo
     """The point after a step of size h (..., 1)."""
     whole = m.shape
     spins = m.reshape((*whole[:-1], whole[-1] // 3, 3))
-    radii = _length(spins)
+    radii = norm(spins)[..., None]
 
     def rotation(x: Values) -> Values:
         doubled = spins + _rotated(x.reshape(spins.shape), spins)
-        over = radii / _length(doubled)
+        over = radii / norm(doubled)[..., None]
         velocity = psi((over * doubled).reshape(whole), t + h / 2)
         return h * (2 * over * velocity.reshape(spins.shape)).reshape(whole)
 
@@ -256,10 +256,6 @@ def _rotated(x: Values, m: Values) -> Values:
     """The vectors cay(x) m for x and m (..., 3)."""
     turned = np.cross(x, m)
     return m + (turned + np.cross(x, turned) / 2) / (1 + np.sum(x * x, axis=-1, keepdims=True) / 4)
-
-
-def _length(m: Values) -> Values:
-    return np.sqrt(np.sum(m * m, axis=-1, keepdims=True))
 
 
 def _require_spheres(representation: Representation) -> None:

@@ -17,7 +17,7 @@ from liehom.flow.methods.low_order import BackwardEuler, CommutatorFree4, Crouch
 from liehom.flow.methods.midpoint import IsospectralMidpoint, MoserVeselov, SphericalMidpoint, VariationalMidpoint
 from liehom.flow.methods.rkmk import RKMK
 from liehom.flow.methods.stiff import METHODS as ROSENBROCK, ExponentialRosenbrock, Rosenbrock, StiffRKMK
-from liehom.flow.methods.tableaux import tableau, tableau_names
+from liehom.flow.methods.tableaux import key_of, tableau, tableau_names
 from liehom.flow.methods.taylor import Taylor
 from liehom.flow.steps.corrected import Corrected
 from liehom.flow.steps.step import Step
@@ -75,13 +75,13 @@ def step_named(base: str, order: int | None = None) -> Step:
         )
     if order is not None:
         order = checked_integer(order, "the order")
-    key = _key(base)
+    key = key_of(base)
     if key in _SERIES and order is not None:
         return _SERIES[key](order)
     step = _plain(_ALIASES.get(key, key), base)
     if order is None or order <= step.order:
         return step
-    return Composition(step, order) if key in map(_key, _SYMPLECTIC) else Corrected(step, order)
+    return Composition(step, order) if key in map(key_of, _SYMPLECTIC) else Corrected(step, order)
 
 
 def step_names() -> tuple[str, ...]:
@@ -94,16 +94,12 @@ def step_names() -> tuple[str, ...]:
     >>> "rk4" in step_names()
     True
     """
-    return (*_STEPS, *(name for name in tableau_names() if _key(name) not in {*map(_key, _STEPS), *_ALIASES}))
-
-
-def _key(name: str) -> str:
-    return re.sub(r"[\s_-]+", "", name.lower())
+    return (*_STEPS, *(name for name in tableau_names() if key_of(name) not in {*map(key_of, _STEPS), *_ALIASES}))
 
 
 def _plain(key: str, base: str) -> Step:
     """The uncorrected step of a name without spaces."""
-    own = {_key(name): step for name, step in _STEPS.items()}
+    own = {key_of(name): step for name, step in _STEPS.items()}
     if key in own:
         return own[key]()
     if match := _OF_ORDER.fullmatch(key):

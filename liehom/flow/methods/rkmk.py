@@ -12,6 +12,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Callable, Sequence
 from fractions import Fraction
+from functools import cached_property, partial
 from typing import Any, NamedTuple, final
 
 import numpy as np
@@ -25,7 +26,7 @@ from liehom.flow.methods.tableaux import tableau as tableau_of
 from liehom.flow.run.check import widest_gap
 from liehom.flow.series.arrays import is_exact, is_jax, zeros
 from liehom.flow.steps.implicit import SparseRow, combined, reach_of, solve_implicitly
-from liehom.flow.steps.step import Factors, Generator, LastSize, LocalStep, OneExponential
+from liehom.flow.steps.step import Generator, LastSize, LocalStep, OneExponential
 
 
 class Coefficients(NamedTuple):
@@ -116,7 +117,9 @@ class RKMK(OneExponential):
     def at(self, action: Action, psi: Generator, m: Values, t: Values, *, error_terms: int = 0) -> LocalStep:
         if self.tableau.embedded_b is None:
             return super().at(action, psi, m, t, error_terms=error_terms)
-        return EmbeddedStep(Stages(self, action, psi, m, t))
+        stages = Stages(self, action, psi, m, t)
+        generator, difference = (partial(stages.combined, row) for row in (stages.numbers.b, stages.numbers.difference))
+        return EmbeddedStep(action, m, generator, difference, estimate_order(self.tableau), stages.numbers.widest_gap)
 
     def __repr__(self) -> str:
         return f"RKMK({self.tableau.name!r})"
@@ -137,42 +140,36 @@ class RKMK(OneExponential):
         return _coefficients([list(row) for row in rows])
 
 
-@final
 class EmbeddedStep(LocalStep):
-    """A step of a pair of Runge-Kutta methods at one point, with an estimate of its error; `RKMK.at` returns it.
+    """A step with one exponential at one point, and its difference from another generator as estimate of its error."""
 
-    The stages for the last h are cached and shared by `factors` and `estimate`.
-    """
-
-    def __init__(self, stages: Stages) -> None:
-        super().__init__(stages.action, stages.m)
-        tableau = stages.method.tableau
-        self.estimate_order: int = min(tableau.order, tableau.embedded_order or tableau.order) + 1
-        self.widest_gap = stages.numbers.widest_gap
-        self._stages = stages
-
-    def factors(self, h: Values) -> Factors:
-        return (self._stages.combined(self._stages.numbers.b, h),)
+    def __init__(
+        self, action: Action, m: Values, generator: Callable[[Values], Values], difference: Callable[[Values], Values],
+        order: int | None, gap: float,
+    ) -> None:  # fmt: skip
+        super().__init__(action, m, lambda h: (generator(h),))
+        self.estimate_order, self.widest_gap, self._difference = order, gap, difference
 
     def estimate(self, h: Values) -> Values:
-        """rho(xi - xi_embedded) m for h (..., 1) or a Jet: the error of the step to leading order, shape (..., N)."""
-        stages = self._stages
-        return stages.action.infinitesimal(stages.combined(stages.numbers.difference, h), stages.m)
+        """rho(x) m with x the difference, for h (..., 1) or a Jet, to leading order the error; shape (..., N)."""
+        return self.action.infinitesimal(self._difference(h), self.m)
+
+
+def estimate_order(tableau: Tableau) -> int:
+    """The order in h of the difference of the two methods of a tableau."""
+    return min(tableau.order, tableau.embedded_order or tableau.order) + 1
 
 
 @final
 class Stages:
-    """Stages k_i of a method at one point, on demand for the last h; if `hasty`, equations are given up early."""
+    """Stages k_i of a method at one point, on demand for the last h."""
 
-    def __init__(
-        self, method: RKMK, action: Action, psi: Generator, m: Values, t: Values, *, hasty: bool = False
-    ) -> None:
-        self.method, self.action, self.psi, self.m, self.t, self.hasty = method, action, psi, m, t, hasty
+    def __init__(self, method: RKMK, action: Action, psi: Generator, m: Values, t: Values) -> None:
+        self.method, self.action, self.psi, self.m, self.t = method, action, psi, m, t
         self.numbers: Coefficients = method.coefficients(m)
         # a row without entries beyond its diagonal needs no later stage
         self._sequential = all(j <= i for i, row in enumerate(self.numbers.a) for j, _ in row)
         self._shape = (*np.shape(m)[:-1], action.dimension)
-        self._start: Values | None = None
         self._known: LastSize[list[Values]] = LastSize(lambda h: [])
         self.solver: Callable[[Values], list[Values]] = self._solved  # of all stages at once
 
@@ -200,7 +197,7 @@ class Stages:
         def stage(k: Values) -> Values:
             return self._stage(i, k * diagonal if before is None else before + k * diagonal, h)
 
-        return solve_implicitly(stage, zeros(self.m, self._shape), h, reach=reach_of(self.action), hasty=self.hasty)
+        return solve_implicitly(stage, zeros(self.m, self._shape), h, reach=reach_of(self.action))
 
     def _solved(self, h: Values) -> list[Values]:
         """All stages of an implicit method, from one equation for an array with a first axis for the stages."""
@@ -209,15 +206,17 @@ class Stages:
         def stages(u: list[Any]) -> list[Values]:
             return [self._stage(i, x, h) for i, x in enumerate(u)]
 
-        k = solve_implicitly(stages, start, h, rows=rows, reach=reach_of(self.action), hasty=self.hasty)
+        k = solve_implicitly(stages, start, h, rows=rows, reach=reach_of(self.action))
         return [k[i] for i in range(len(rows))]
+
+    @cached_property
+    def _start(self) -> Values:
+        return self.psi(self.m, self.t)
 
     def _stage(self, i: int, u: Values | None, h: Values) -> Values:
         """k_i for the generator u of its point, None for u = 0."""
         c = self.numbers.c[i]
         if u is None and c == 0:
-            if self._start is None:
-                self._start = self.psi(self.m, self.t)
             return h * self._start
         time = self.t + h * c
         if u is None:

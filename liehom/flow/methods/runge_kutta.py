@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache, cached_property, partial
 from itertools import islice, zip_longest
-from math import prod
 from typing import Any, final
 
 import numpy as np
@@ -36,10 +35,7 @@ MAX_ORDER = 14
 @final
 @dataclass(frozen=True)
 class RootedTree:
-    """A rooted tree, written as the bracket of the subtrees at its root; the single vertex is ``RootedTree()``.
-
-    The order of the subtrees matters for ``==`` only; `rooted_trees` returns each tree in one order.
-    """
+    """A rooted tree, written as the bracket of the subtrees at its root; the single vertex is ``RootedTree()``."""
 
     children: tuple[RootedTree, ...] = ()
 
@@ -47,11 +43,6 @@ class RootedTree:
     def order(self) -> int:
         """The number of vertices."""
         return 1 + sum(child.order for child in self.children)
-
-    @cached_property
-    def density(self) -> int:
-        """gamma(t): the product, over the vertices, of the number of vertices from there upward."""
-        return self.order * prod(child.density for child in self.children)
 
     def __str__(self) -> str:
         return f"[{', '.join(map(str, self.children))}]" if self.children else "τ"
@@ -61,7 +52,7 @@ class RootedTree:
 
 
 @dataclass(frozen=True, slots=True)
-class _Level:
+class Level:
     """All trees of one order: tree `start + i` is tree `left[i]` with tree `right[i]` grafted to its root."""
 
     start: int
@@ -75,33 +66,33 @@ class _Level:
 
 
 @cache
-def _level(order: int) -> _Level:
+def level_of(order: int) -> Level:
     """All trees of one order, each once, because a grafted tree is not later in the list than those grafted before."""
     if order == 1:
         anything_may_follow = np.array([np.iinfo(np.int64).max])
-        return _Level(0, np.array([-1]), anything_may_follow, np.array([1]))
-    below = _level(order - 1)
+        return Level(0, np.array([-1]), anything_may_follow, np.array([1]))
+    below = level_of(order - 1)
     left, right, density = [], [], []
     for grafted in range(1, order):
-        u, v = _level(order - grafted), _level(grafted)
+        u, v = level_of(order - grafted), level_of(grafted)
         i, j = np.nonzero(v.start + np.arange(v.count) <= u.right[:, None])
         left.append(u.start + i)
         right.append(v.start + j)
         density.append(u.density[i] // (order - grafted) * v.density[j] * order)
-    return _Level(below.start + below.count, np.concatenate(left), np.concatenate(right), np.concatenate(density))
+    return Level(below.start + below.count, np.concatenate(left), np.concatenate(right), np.concatenate(density))
 
 
 @cache
-def _tree(index: int) -> RootedTree:
+def tree_at(index: int) -> RootedTree:
     """The tree at an index in the list of all trees, sorted by order."""
-    level, order = _level(1), 1
+    level, order = level_of(1), 1
     while index >= level.start + level.count:
         order += 1
-        level = _level(order)
+        level = level_of(order)
     if index == 0:
         return RootedTree()
     left, right = int(level.left[index - level.start]), int(level.right[index - level.start])
-    return RootedTree((*_tree(left).children, _tree(right)))
+    return RootedTree((*tree_at(left).children, tree_at(right)))
 
 
 def checked_order(order: object, what: str = "order") -> int:
@@ -109,17 +100,6 @@ def checked_order(order: object, what: str = "order") -> int:
     if isinstance(order, bool) or not isinstance(order, int | np.integer) or not 1 <= order <= MAX_ORDER:
         raise InputError(f"the {what} is an integer from 1 to {MAX_ORDER}, got {order!r}")
     return int(order)
-
-
-def rooted_trees(order: int) -> tuple[RootedTree, ...]:
-    """All rooted trees with `order` vertices, each once, in the order in which violations are looked for."""
-    level = _level(checked_order(order))
-    return tuple(_tree(level.start + i) for i in range(level.count))
-
-
-def densities(order: int) -> npt.NDArray[np.int64]:
-    """gamma of all trees with `order` vertices, in the order of `rooted_trees`, shape (count,)."""
-    return _level(checked_order(order)).density
 
 
 def elementary_weights(matrix: npt.NDArray[Any], weights: npt.NDArray[Any]) -> Iterator[npt.NDArray[Any]]:
@@ -130,7 +110,7 @@ def elementary_weights(matrix: npt.NDArray[Any], weights: npt.NDArray[Any]) -> I
     yield fresh @ weights
     for order in range(2, MAX_ORDER + 1):
         grafts = np.concatenate([grafts, fresh @ matrix.T])
-        level = _level(order)
+        level = level_of(order)
         fresh = stages[level.left] * grafts[level.right]
         stages = np.concatenate([stages, fresh])
         yield fresh @ weights
@@ -174,7 +154,8 @@ def order_checks(
     """Order by order, through `MAX_ORDER`: the first condition that fails, and the largest |Phi(t) - 1/gamma(t)|."""
     by_order = elementary_weights(np.stack([_array(row, field) for row in a]), _array(b, field))
     for order, phi in enumerate(by_order, start=1):
-        gamma = densities(order)
+        level = level_of(order)
+        gamma = level.density
         if field.exact:  # multiplied out: division is what costs most in a number field
             wrong = [i for i, (x, g) in enumerate(zip(phi, gamma.tolist(), strict=True)) if x * g != 1]
             largest = 0.0
@@ -186,7 +167,7 @@ def order_checks(
             continue
         i = wrong[0]
         weight = phi[i] if field.exact else float(phi[i])
-        yield Violation(rooted_trees(order)[i], weight, Fraction(1, int(gamma[i])), field), largest
+        yield Violation(tree_at(level.start + i), weight, Fraction(1, int(gamma[i])), field), largest
 
 
 def _array(values: Sequence[Scalar], field: Field) -> npt.NDArray[Any]:
@@ -198,7 +179,7 @@ def _array(values: Sequence[Scalar], field: Field) -> npt.NDArray[Any]:
 
 # Tableau: the coefficients of a Runge-Kutta method, with a proof of the order that is claimed for them. The method is
 # k_i = f(t + c_i h, y + h sum_j a_ij k_j), y' = y + h sum_i b_i k_i, with c_i = sum_j a_ij. The constructor evaluates
-# the order conditions of all rooted trees up to the claimed order (`rooted_trees`). Over QQ and real number fields this
+# the order conditions of all rooted trees up to the claimed order (`level_of`). Over QQ and real number fields this
 # is exact and proves the order; in float64, `residual` is the largest violation.
 
 Row = tuple[Scalar, ...]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cached_property, partial
 from math import factorial, sqrt
 from typing import Any, NamedTuple, final
 
@@ -14,7 +15,7 @@ from liehom.base.errors import InputError, TraceError, displayed
 from liehom.base.typing import Lanes, Real, Values
 from liehom.flow.action.maps import applied, identity, inverse, solve
 from liehom.flow.action.space import Action
-from liehom.flow.methods.rkmk import RKMK, Stages, sparse_row
+from liehom.flow.methods.rkmk import RKMK, EmbeddedStep, Stages, estimate_order, sparse_row
 from liehom.flow.methods.runge_kutta import Tableau
 from liehom.flow.methods.tableaux import tableau as tableau_of
 from liehom.flow.run.check import repeated, widest_gap
@@ -30,7 +31,7 @@ from liehom.flow.steps.implicit import (
     combined,
     reach_of,
 )
-from liehom.flow.steps.step import Factors, Generator, LastSize, LocalStep, OneExponential, length, polynomial
+from liehom.flow.steps.step import Generator, LastSize, LocalStep, OneExponential, length, polynomial
 from liehom.flow.tracing.array import Traced
 
 # Linearization: u' = f(u, s) in the algebra at a point, with f(u, s) = dexp^-1_u psi(Exp(u) m, t + s).
@@ -44,8 +45,6 @@ class Linearization:
         self.action, self.psi, self.m, self.t, self.terms = action, psi, m, t, terms
         self.shape = (*np.shape(m)[:-1], action.dimension)
         self.start: Values = psi(m, t)  # f(0, 0)
-        self._jacobian: Values | None = None
-        self._rate: Values | None = None
 
     def value(self, u: Values, s: Real) -> Values:
         """f(u, s), of the shape of u."""
@@ -54,26 +53,22 @@ class Linearization:
             velocity = self.action.exponential.differential_inverse(u, velocity, self.terms)
         return velocity
 
-    @property
+    @cached_property
     def jacobian(self) -> Values:
         """df/du, shape (..., n, n)."""
-        if self._jacobian is None:
-            equation = Equation(lambda y: [self.value(y[0], 0.0)], [((0, 1.0),)])
-            self._jacobian = equation.blocks(zeros(self.m, (1, *self.shape)))[0]
-        return self._jacobian
+        equation = Equation(lambda y: [self.value(y[0], 0.0)], [((0, 1.0),)])
+        return equation.blocks(zeros(self.m, (1, *self.shape)))[0]
 
-    @property
+    @cached_property
     def rate(self) -> Values | None:
         """df/ds, shape (..., n); None if psi does not depend on t."""
         if not self.psi.field.time_dependent:
             return None
-        if self._rate is None:
-            try:
-                moved: Any = self.psi(Jet.constant(self.m, 1), Jet.variable(self.t, 1))
-                self._rate = moved.coefficient(1) if isinstance(moved, Jet) else 0 * moved
-            except NOT_ON_JETS:
-                self._rate = (self.psi(self.m, self.t + DIFFERENCE) - self.start) / DIFFERENCE
-        return self._rate
+        try:
+            moved: Any = self.psi(Jet.constant(self.m, 1), Jet.variable(self.t, 1))
+            return moved.coefficient(1) if isinstance(moved, Jet) else 0 * moved
+        except NOT_ON_JETS:
+            return (self.psi(self.m, self.t + DIFFERENCE) - self.start) / DIFFERENCE
 
     def solve(self, scale: Values, right: Values) -> Values:
         """x with (1 - scale J) x = right, for scale (..., 1)."""
@@ -137,7 +132,7 @@ class StiffRKMK(OneExponential):
         return self.tableau.order
 
     def at(self, action: Action, psi: Generator, m: Values, t: Values, *, error_terms: int = 0) -> LocalStep:
-        stages = Stages(self._base, action, psi, m, t, hasty=error_terms > 0)  # sizes are adaptive
+        stages = Stages(self._base, action, psi, m, t)
         few = len(self.tableau.b) * action.dimension <= MAX_TRACED and not psi.field.sites
         polynomial = self._polynomial if error_terms and few else None  # type: ignore[attr-defined]
         return StiffStep(stages, polynomial, *self._estimate)  # type: ignore[attr-defined]
@@ -147,34 +142,31 @@ class StiffRKMK(OneExponential):
 
 
 @final
-class StiffStep(LocalStep):
+class StiffStep(EmbeddedStep):
     """An implicit step at one point, with the estimate of its error; `StiffRKMK.at` returns it."""
 
     def __init__(
         self, stages: Stages, collocation: Collocation | None, weights: SparseRow, gamma: float, at_start: bool,
         order: int,
     ) -> None:  # fmt: skip
-        super().__init__(stages.action, stages.m)
-        self.estimate_order, self.widest_gap = order, stages.numbers.widest_gap
+        action, numbers = stages.action, stages.numbers
+        generator = partial(stages.combined, numbers.b)
+        super().__init__(action, stages.m, generator, self._filtered, order, numbers.widest_gap)
         self._stages, self._weights, self._gamma, self._at_start = stages, weights, gamma, at_start
-        action = stages.action
         self._linear = linear = Linearization(action, stages.psi, stages.m, stages.t, stages.method.terms)
         self._filter = LastSize(lambda h: inverse(np.eye(action.dimension) - (gamma * h)[..., None] * linear.jacobian))
         if collocation is not None:
             self._collocation, self.collocates, stages.solver = collocation, True, self._solved
 
-    def factors(self, h: Values) -> Factors:
-        return (self._stages.combined(self._stages.numbers.b, h),)
-
-    def estimate(self, h: Values) -> Values:
-        """rho(x) m with x the filtered difference of two methods, for h (..., 1); shape (..., N)."""
+    def _filtered(self, h: Values) -> Values:
+        """The difference of two methods, filtered."""
         stages = self._stages
         known = stages.through(h, max(i for i, _ in (*stages.numbers.b, *self._weights)) + 1)
         difference: Any = combined(self._weights, known)
         if self._at_start:
             difference = difference + self._gamma * h * self._linear.start
-        error: Any = stages.action.infinitesimal(applied(self._filter(h), difference), stages.m)
-        return namespace(error).where(self._settled[..., None], error, np.nan) if self.collocates else error
+        x: Any = applied(self._filter(h), difference)
+        return namespace(x).where(self._settled[..., None], x, np.nan) if self.collocates else x
 
     def estimate_within(self, h: Values, part: Values) -> Values:
         """The same vectors (..., N) with psi at the time part h, 0 <= part < 1, in place of the start."""
@@ -282,8 +274,7 @@ def _estimate_of(tableau: Tableau) -> tuple[SparseRow, float, bool, int]:
     real = np.abs(eigenvalues[np.abs(eigenvalues.imag) < 1e-6])
     gamma = float(real.max() if real.size and real.max() > 0 else np.abs(eigenvalues).max())
     if embedded is not None:
-        order = min(tableau.order, tableau.embedded_order or tableau.order) + 1
-        return sparse_row((embedded - b).tolist()), gamma, False, order
+        return sparse_row((embedded - b).tolist()), gamma, False, estimate_order(tableau)
     s = len(c)
     if len(np.unique(np.round(c, 12))) < s or bool((np.abs(c) < 1e-12).any()):
         raise InputError(
@@ -383,44 +374,30 @@ class Rosenbrock(OneExponential):
         return METHODS[self.name].order
 
     def at(self, action: Action, psi: Generator, m: Values, t: Values, *, error_terms: int = 0) -> LocalStep:
-        return RosenbrockStep(METHODS[self.name], Linearization(action, psi, m, t, max(self.order - 1, 1)))
+        method, linear = METHODS[self.name], Linearization(action, psi, m, t, max(self.order - 1, 1))
+        stages = LastSize(lambda h: _rosenbrock_stages(method, linear, h))
+        generator, difference = sparse_row(method.m), sparse_row(method.e)
+        return EmbeddedStep(
+            action, m, lambda h: combined(generator, stages(h)), lambda h: combined(difference, stages(h)),
+            method.estimate_order, widest_gap(method.alpha),
+        )  # fmt: skip
 
 
-@final
-class RosenbrockStep(LocalStep):
-    """A Rosenbrock step at one point, with an estimate of its error; `Rosenbrock.at` returns it."""
-
-    def __init__(self, method: RosenbrockData, linear: Linearization) -> None:
-        super().__init__(linear.action, linear.m)
-        self.estimate_order, self.widest_gap = method.estimate_order, widest_gap(method.alpha)
-        self._method, self._linear = method, linear
-        self._stages = LastSize(self._computed)
-
-    def factors(self, h: Values) -> Factors:
-        return (combined(sparse_row(self._method.m), self._stages(h)),)
-
-    def estimate(self, h: Values) -> Values:
-        """rho(x) m with x the difference of the embedded methods, for h (..., 1); shape (..., N)."""
-        return self.action.infinitesimal(combined(sparse_row(self._method.e), self._stages(h)), self.m)
-
-    def _computed(self, h: Values) -> list[Any]:
-        """U_1, ..., U_s."""
-        method, linear = self._method, self._linear
-        stages: list[Any] = []
-        for i, gamma_i in enumerate(method.gammas):
-            u = combined(sparse_row(method.a[i]), stages)
-            if u is None:
-                right = h * (
-                    linear.start if method.alpha[i] == 0 else linear.psi(self.m, linear.t + method.alpha[i] * h)
-                )
-            else:
-                right = h * linear.value(u, method.alpha[i] * h)
-            before = combined(sparse_row(method.c[i]), stages)
-            right = right if before is None else right + before
-            if gamma_i and linear.rate is not None:
-                right = right + gamma_i * h * h * linear.rate
-            stages.append(linear.solve(method.gamma * h, method.gamma * right))
-        return stages
+def _rosenbrock_stages(method: RosenbrockData, linear: Linearization, h: Values) -> list[Any]:
+    """U_1, ..., U_s."""
+    stages: list[Any] = []
+    for i, gamma_i in enumerate(method.gammas):
+        u = combined(sparse_row(method.a[i]), stages)
+        if u is None:
+            right = h * (linear.start if method.alpha[i] == 0 else linear.psi(linear.m, linear.t + method.alpha[i] * h))
+        else:
+            right = h * linear.value(u, method.alpha[i] * h)
+        before = combined(sparse_row(method.c[i]), stages)
+        right = right if before is None else right + before
+        if gamma_i and linear.rate is not None:
+            right = right + gamma_i * h * h * linear.rate
+        stages.append(linear.solve(method.gamma * h, method.gamma * right))
+    return stages
 
 
 # ExponentialRosenbrock: steps that integrate the linearization of the field exactly. For u' = f(u), u(0) = 0 in the
@@ -468,25 +445,14 @@ class ExponentialRosenbrock(OneExponential):
     def at(self, action: Action, psi: Generator, m: Values, t: Values, *, error_terms: int = 0) -> LocalStep:
         if is_lazy(m):
             raise TraceError("exponential Rosenbrock steps need exponentials of matrices: take Rosenbrock('rodas4')")
-        return _ExponentialStep(self.order, Linearization(action, psi, m, t, max(self.order - 1, 1)))
+        linear = Linearization(action, psi, m, t, max(self.order - 1, 1))
+        both = LastSize(lambda h: self._computed(linear, h))
+        order = None if self.order == 2 else self.order
+        return EmbeddedStep(action, m, lambda h: both(h)[0], lambda h: both(h)[1], order, 1.0)
 
-
-@final
-class _ExponentialStep(LocalStep):
-    """An exponential Rosenbrock step at one point; from order 3 on with an estimate of its error."""
-
-    def __init__(self, order: int, linear: Linearization) -> None:
-        super().__init__(linear.action, linear.m)
-        self.order, self._linear = order, linear
-        self.estimate_order = None if order == 2 else order
-        self._solved = LastSize(self._computed)
-
-    def factors(self, h: Values) -> Factors:
-        return (self._solved(h)[0],)
-
-    def _computed(self, h: Values) -> tuple[Any, Any]:
+    def _computed(self, at: Linearization, h: Values) -> tuple[Any, Any]:
         """The generator of the step of size h, and the difference from the one of lower order."""
-        at, rate = self._linear, self._linear.rate
+        rate = at.rate
         jacobian: Any = at.jacobian
         phi = _phis(h, jacobian)
         v = h * applied(phi[0], at.start)
@@ -510,10 +476,6 @@ class _ExponentialStep(LocalStep):
         e = rest(v + h * applied(phi[0], d), h)
         extra = h * applied(phi[3], 12 * e - 48 * d)
         return v + h * applied(phi[2], 16 * d - 2 * e) + extra, extra
-
-    def estimate(self, h: Values) -> Values:
-        """rho(x) m with x the difference of the methods of two orders, for h (..., 1); shape (..., N)."""
-        return self.action.infinitesimal(self._solved(h)[1], self.m)
 
 
 def _phis(h: Values, jacobian: Values) -> list[Any]:

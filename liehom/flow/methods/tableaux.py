@@ -24,37 +24,28 @@ from liehom.flow.methods.runge_kutta import MAX_ORDER, Tableau
 
 
 class ButcherData(NamedTuple):
-    """Coefficients of one method, with the weights and order of an embedded method if it has one, and the source."""
+    """Coefficients of one method, with the weights and order of an embedded method if it has one."""
 
     order: int
     a: str
     b: str
     embedded: str = ""
     embedded_order: int | None = None
-    source: str = ""
-
-
-class CollocationData(NamedTuple):
-    """One collocation method: its order, its nodes separated by commas, and its usual name."""
-
-    order: int
-    nodes: str
-    source: str = ""
 
 
 EXPLICIT = {
-    "euler": ButcherData(1, "", "1", source="L. Euler 1768"),
-    "midpoint": ButcherData(2, "; 1/2", "0 1", source="C. Runge 1895"),
-    "heun": ButcherData(2, "; 1", "1/2 1/2", "1 0", 1, "the explicit trapezoidal rule, with Euler embedded"),
-    "ralston": ButcherData(2, "; 2/3", "1/4 3/4", source="A. Ralston 1962: least error bound of two stages"),
-    "kutta3": ButcherData(3, "; 1/2; -1 2", "1/6 2/3 1/6", source="W. Kutta 1901"),
-    "heun3": ButcherData(3, "; 1/3; 0 2/3", "1/4 0 3/4", source="K. Heun 1900"),
-    "ssprk3": ButcherData(3, "; 1; 1/4 1/4", "1/6 1/6 2/3", source="C.-W. Shu, S. Osher 1988"),
-    "rk4": ButcherData(4, "; 1/2; 0 1/2; 0 0 1", "1/6 1/3 1/3 1/6", source="W. Kutta 1901"),
-    "3/8": ButcherData(4, "; 1/3; -1/3 1; 1 -1 1", "1/8 3/8 3/8 1/8", source="W. Kutta 1901"),
-    "rk23": ButcherData(
-        3, "; 1/2; 0 3/4; 2/9 1/3 4/9", "2/9 1/3 4/9 0", "7/24 1/4 1/3 1/8", 2, "P. Bogacki, L. F. Shampine 1989"
-    ),
+    "euler": ButcherData(1, "", "1"),  # L. Euler 1768
+    "midpoint": ButcherData(2, "; 1/2", "0 1"),  # C. Runge 1895
+    "heun": ButcherData(2, "; 1", "1/2 1/2", "1 0", 1),  # the explicit trapezoidal rule, with Euler embedded
+    "ralston": ButcherData(2, "; 2/3", "1/4 3/4"),  # A. Ralston 1962: least error bound of two stages
+    "kutta3": ButcherData(3, "; 1/2; -1 2", "1/6 2/3 1/6"),  # W. Kutta 1901
+    "heun3": ButcherData(3, "; 1/3; 0 2/3", "1/4 0 3/4"),  # K. Heun 1900
+    "ssprk3": ButcherData(3, "; 1; 1/4 1/4", "1/6 1/6 2/3"),  # C.-W. Shu, S. Osher 1988
+    "rk4": ButcherData(4, "; 1/2; 0 1/2; 0 0 1", "1/6 1/3 1/3 1/6"),  # W. Kutta 1901
+    "3/8": ButcherData(4, "; 1/3; -1/3 1; 1 -1 1", "1/8 3/8 3/8 1/8"),  # W. Kutta 1901
+    # P. Bogacki, L. F. Shampine 1989
+    "rk23": ButcherData(3, "; 1/2; 0 3/4; 2/9 1/3 4/9", "2/9 1/3 4/9 0", "7/24 1/4 1/3 1/8", 2),
+    # J. R. Dormand, P. J. Prince 1980
     "rk45": ButcherData(
         5,
         """; 1/5; 3/40 9/40; 44/45 -56/15 32/9; 19372/6561 -25360/2187 64448/6561 -212/729;
@@ -62,8 +53,8 @@ EXPLICIT = {
         "35/384 0 500/1113 125/192 -2187/6784 11/84 0",
         "5179/57600 0 7571/16695 393/640 -92097/339200 187/2100 1/40",
         4,
-        "J. R. Dormand, P. J. Prince 1980",
     ),
+    # E. Fehlberg 1969; continued with the weights of order 5
     "rkf45": ButcherData(
         5,
         """; 1/4; 3/32 9/32; 1932/2197 -7200/2197 7296/2197; 439/216 -8 3680/513 -845/4104;
@@ -71,8 +62,8 @@ EXPLICIT = {
         "16/135 0 6656/12825 28561/56430 -9/50 2/55",
         "25/216 0 1408/2565 2197/4104 -1/5 0",
         4,
-        "E. Fehlberg 1969; continued with the weights of order 5",
     ),
+    # J. H. Verner 1978, the pair of DVERK
     "verner65": ButcherData(
         6,
         """; 1/6; 4/75 16/75; 5/6 -8/3 5/2; -165/64 55/6 -425/64 85/96;
@@ -81,14 +72,13 @@ EXPLICIT = {
         "3/40 0 875/2244 23/72 264/1955 0 125/11592 43/616",
         "13/160 0 2375/5984 5/16 12/85 3/44 0 0",
         5,
-        "J. H. Verner 1978, the pair of DVERK",
     ),
 }
 
 IMPLICIT = {
-    "lobatto3c": ButcherData(
-        4, "1/6 -1/3 1/6; 1/6 5/12 -1/12; 1/6 2/3 1/6", "1/6 2/3 1/6", source="F. H. Chipman 1971"
-    ),
+    # F. H. Chipman 1971
+    "lobatto3c": ButcherData(4, "1/6 -1/3 1/6; 1/6 5/12 -1/12; 1/6 2/3 1/6", "1/6 2/3 1/6"),
+    # E. Hairer, G. Wanner 1996, L-stable
     "sdirk4": ButcherData(
         4,
         """1/4 0 0 0 0; 1/2 1/4 0 0 0; 17/50 -1/25 1/4 0 0; 371/1360 -137/2720 15/544 1/4 0;
@@ -96,19 +86,18 @@ IMPLICIT = {
         "25/24 -49/48 125/16 -85/12 1/4",
         "59/48 -17/96 225/32 -85/12 0",
         3,
-        "E. Hairer, G. Wanner 1996, L-stable",
     ),
-    "sdirk2": ButcherData(
-        2, "1-sqrt(2)/2 0; sqrt(2)/2 1-sqrt(2)/2", "sqrt(2)/2 1-sqrt(2)/2", source="R. Alexander 1977, L-stable"
-    ),
+    # R. Alexander 1977, L-stable
+    "sdirk2": ButcherData(2, "1-sqrt(2)/2 0; sqrt(2)/2 1-sqrt(2)/2", "sqrt(2)/2 1-sqrt(2)/2"),
 }
 
+# orders and nodes
 COLLOCATION = {
-    "implicit euler": CollocationData(1, "1"),
-    "implicit midpoint": CollocationData(2, "1/2"),
-    "trapezoidal": CollocationData(2, "0, 1", "Lobatto IIIA of two stages"),
-    "radau2a": CollocationData(3, "1/3, 1", "Radau IIA of two stages, B. L. Ehle 1969"),
-    "radau2a3": CollocationData(5, "2/5 - sqrt(6)/10, 2/5 + sqrt(6)/10, 1", "Radau IIA of three stages"),
+    "implicit euler": (1, "1"),
+    "implicit midpoint": (2, "1/2"),
+    "trapezoidal": (2, "0, 1"),  # Lobatto IIIA of two stages
+    "radau2a": (3, "1/3, 1"),  # Radau IIA of two stages, B. L. Ehle 1969
+    "radau2a3": (5, "2/5 - sqrt(6)/10, 2/5 + sqrt(6)/10, 1"),  # Radau IIA of three stages
 }
 
 
@@ -160,11 +149,7 @@ def _coefficients(c: list[Scalar], field: Field) -> list[list[Scalar]]:
 
 
 def gauss(stages: int) -> Tableau:
-    """The Gauss method with s stages, of order 2 s: collocation at the zeros of the Legendre polynomial.
-
-    Up to 3 stages it is exact, over QQ, QQ(sqrt(3)) and QQ(sqrt(15)). For 4 to 7 stages, the nodes are computed with 60
-    digits, and the coefficients are rounded to float64.
-    """
+    """The Gauss method with s stages, from 1 to 7, of order 2 s, up to 3 stages exact, else rounded to float64."""
     if isinstance(stages, bool) or not isinstance(stages, int) or not 1 <= stages <= MAX_ORDER // 2:
         raise InputError(f"a Gauss method has 1 to {MAX_ORDER // 2} stages here, got {stages!r}")
     exact = {
@@ -264,8 +249,8 @@ def tableau(name: str | Tableau) -> Tableau:
         return name
     if not isinstance(name, str):
         raise InputError(f"expected the name of a tableau, or a Tableau, got {displayed(name)}")
-    known = {_key(x): x for x in tableau_names()} | {_key(x): y for x, y in _ALIASES.items()}
-    key = _key(name)
+    known = {key_of(x): x for x in tableau_names()} | {key_of(x): y for x, y in _ALIASES.items()}
+    key = key_of(name)
     if key in known:
         return _made(known[key])
     near = get_close_matches(key, known, n=1)
@@ -286,7 +271,8 @@ def tableau_names() -> tuple[str, ...]:
     return (*EXPLICIT, "dop853", *COLLOCATION, *(f"gauss{s}" for s in range(2, 8)), "radau9", *IMPLICIT)
 
 
-def _key(name: str) -> str:
+def key_of(name: str) -> str:
+    """A name without what does not matter in it: case, spaces, hyphens and underscores."""
     return re.sub(r"[\s_-]+", "", name.lower())
 
 
@@ -299,7 +285,7 @@ def _made(name: str) -> Tableau:
     if match := _GAUSS.fullmatch(name):
         return gauss(int(match[1]))
     if name in COLLOCATION:
-        return collocation(name, COLLOCATION[name].nodes.split(","), COLLOCATION[name].order)
+        return collocation(name, COLLOCATION[name][1].split(","), COLLOCATION[name][0])
     data = EXPLICIT[name] if name in EXPLICIT else IMPLICIT[name]
     return Tableau(
         [row.split() for row in data.a.split(";")],

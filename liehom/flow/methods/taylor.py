@@ -8,11 +8,11 @@ docs/theory/taylor.md.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Sequence
+from collections.abc import Hashable, Sequence
 from dataclasses import dataclass
 from math import ceil, log, log2
 from types import ModuleType
-from typing import Any, ClassVar, NamedTuple, final
+from typing import Any, ClassVar, final
 
 import numpy as np
 
@@ -46,13 +46,6 @@ SECOND_ORDER = 2  # the same for any other Exp, which agrees with the true one t
 EVEN = 2.0  # a term of a Taylor series is at most this, in units of what it is if the series converges evenly
 SHARP_ORDER = 12  # order from which on a series is mostly so near the orbit that it is landed by one map
 MIN_DEFAULT_ORDER, MAX_DEFAULT_ORDER = 4, 24  # bounds for the order that follows from a tolerance
-
-
-class Landing(NamedTuple):
-    """Data for the landing on the orbits of a run; by exponentials if there are neither quadrics nor invariants."""
-
-    quadrics: Quadrics | None  # onto whose level sets points are projected
-    invariants: InvariantLanding | None  # by repetition of an equivariant map
 
 
 @final
@@ -94,7 +87,8 @@ class Taylor(Step):
     """
 
     n: int
-    _landing: ClassVar[Landing | None] = None  # of `prepare`
+    _prepared: ClassVar[bool] = False
+    _landing: ClassVar[Quadrics | InvariantLanding | None] = None  # of `prepare`; None is by exponentials
 
     def __post_init__(self) -> None:
         checked_integer(self.n, "the order of a Taylor step")
@@ -124,37 +118,32 @@ class Taylor(Step):
         return int(self.n)
 
     def at(self, action: Action, psi: Generator, m: Values, t: Values, *, error_terms: int = 0) -> LocalStep:
-        if self._landing is None:
+        if not self._prepared:
             return self.prepare(action, psi, m, t).at(action, psi, m, t, error_terms=error_terms)
         flow = _flow(psi.field, m, self.order, t[..., 0] if np.ndim(t) else t)
         points = [flow.point(k) for k in range(1, self.order + 1)]
         velocity = [flow.psi(k) for k in range(self.order)]
         if error_terms and isinstance(m, np.ndarray):  # psi = sqrt(t) has no derivative at 0, and steps by tolerance
             points, velocity = _finite(points), _finite(velocity)
-        quadrics, invariants = self._landing
-        if quadrics is not None:
-            return ProjectedSeries(action, m, points, quadrics, psi.start)
+        if isinstance(self._landing, Quadrics):
+            return ProjectedSeries(action, m, points, self._landing, psi.start)
         landed = LandedSeries(action, m, points, velocity, psi.orbit_dimension)
-        return landed if invariants is None else InvariantSeries(landed, invariants, psi.start)
+        return landed if self._landing is None else InvariantSeries(landed, self._landing, psi.start)
 
     @property
     def trace_key(self) -> Hashable:
         """How points are landed."""
-        if self._landing is None:
-            return None
-        quadrics, invariants = self._landing
-        return quadrics is None, None if invariants is None else invariants.key
+        return self._prepared, type(self._landing), getattr(self._landing, "key", None)
 
     def prepare(self, action: Action, psi: Generator, m: Values, t: Values) -> Taylor:
         """The step with the landing on the orbits of a run."""
         start: Any = psi.start if psi.start is not None else m
         points = np.zeros((0, m.shape[-1])) if is_traced(start) else np.asarray(start)
-        invariants = None
-        quadrics = quadric_orbits(action.representation, psi.orbit_dimension, points)
+        landing: Any = quadric_orbits(action.representation, psi.orbit_dimension, points)
         dimensions = np.unique(psi.orbit_dimension)
-        if quadrics is None and len(dimensions) == 1 and points.dtype.kind == "f":
-            invariants = invariant_landing(action.representation, int(dimensions[0]), points)
-        return self.with_prepared(_landing=Landing(quadrics, invariants))
+        if landing is None and len(dimensions) == 1 and points.dtype.kind == "f":
+            landing = invariant_landing(action.representation, int(dimensions[0]), points)
+        return self.with_prepared(_prepared=True, _landing=landing)
 
 
 class TaylorSeries(LocalStep):
@@ -204,13 +193,7 @@ class ProjectedSeries(TaylorSeries):
         self, action: Action, m: Values, coefficients: Sequence[Values], quadrics: Quadrics, start: Values | None
     ) -> None:
         super().__init__(action, m, coefficients)
-        self._quadrics = quadrics
-        self._levels: Values | None = None
-        if quadrics.blocks and isinstance(m, Traced):  # computed once for each trajectory
-            levels = [m.tape.trajectory_constant(_level(quadrics, b)) for b in range(len(quadrics.blocks))]
-            self._levels = Traced(m.tape, levels)
-        elif quadrics.blocks:
-            self._levels = quadrics.levels(m if start is None else start)
+        self._quadrics, self._numbers = quadrics, _numbers(quadrics, m, start)
 
     def point(self, h: Values) -> Values:
         """Point after the step of size h (..., 1), shape (..., N)."""
@@ -221,7 +204,7 @@ class ProjectedSeries(TaylorSeries):
         return self._landed(point), velocity
 
     def _landed(self, point: Values) -> Values:
-        return point if self._levels is None else self._quadrics.project(point, self._levels)
+        return self._quadrics.project(point, self._numbers) if self._numbers else point
 
 
 @final
@@ -276,11 +259,7 @@ class InvariantSeries(TaylorSeries):
         super().__init__(far.action, far.m, far.trajectory)
         self._far, self._landing = far, landing
         self._landed = LastSize(self._at)
-        if isinstance(self.m, Traced):
-            tape = self.m.tape
-            self._numbers: Sequence[Values] = [Traced(tape, tape.trajectory_constant(f)) for f in landing.functions()]
-        else:
-            self._numbers = landing.numbers(self.m if start is None else start)
+        self._numbers = _numbers(landing, self.m, start)
 
     def point(self, h: Values) -> Values:
         """Point after the step of size h (..., 1), shape (..., N)."""
@@ -328,6 +307,10 @@ def _finite(coefficients: list[Values]) -> list[Values]:
     return ended
 
 
-def _level(quadrics: Quadrics, index: int) -> Callable[[Array], Array]:
-    """Function of points (..., N) with the values of a form, of shape (...,)."""
-    return lambda points: quadrics.levels(points)[..., index]
+def _numbers(landing: Quadrics | InvariantLanding, m: Values, start: Values | None) -> Sequence[Values]:
+    """The numbers of the orbits, in compiled code computed once for each trajectory."""
+    if isinstance(m, Traced):
+        count = len(landing.numbers(np.ones((1, m.shape[-1]))))
+        functions = [lambda points, i=i: landing.numbers(points)[i] for i in range(count)]
+        return [Traced(m.tape, m.tape.trajectory_constant(f)) for f in functions]
+    return landing.numbers(m if start is None else start)

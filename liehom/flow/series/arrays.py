@@ -118,10 +118,7 @@ def _is_number(value: object) -> bool:
 
 
 def constant_like(like: Values, value: NumbersLike) -> npt.NDArray[Any]:
-    """A copy of a constant as an array of the same kind of numbers as `like`.
-
-    A number takes the type of `like`, as in numpy; next to exact scalars it must be exact.
-    """
+    """A copy of a constant as an array of the same kind of numbers as `like`, exact if these are."""
     if is_lazy(value):
         return as_values(value)
     dtype = getattr(like, "dtype", np.dtype(object))
@@ -156,6 +153,12 @@ def zeros(like: Values, shape: tuple[int, ...]) -> npt.NDArray[Any]:
     out = np.empty(shape, dtype=object)
     out.fill(0 * array.flat[0] if array.size else Fraction(0))
     return out
+
+
+def norm(x: Values) -> Values:
+    """Euclidean norms of x (..., N), shape (...,)."""
+    xp = namespace(x)
+    return xp.sqrt(xp.sum(x * x, axis=-1))
 
 
 def in_lanes(x: Lanes) -> Lanes:
@@ -267,6 +270,12 @@ def solve(a: Values, b: Values) -> npt.NDArray[Any]:
     dtype = np.result_type(a, b)
     if dtype.char not in "gGO":
         return np.linalg.solve(a, b)
+    if dtype.char != "O":
+        rough = np.linalg.inv(a.astype(np.float64 if dtype.char == "g" else np.complex128)).astype(dtype)
+        x = rough @ b
+        for _ in range(3):
+            x = x + rough @ (b - a @ x)
+        return x
     leading = np.broadcast_shapes(a.shape[:-2], b.shape[:-2])
     left = np.broadcast_to(a, (*leading, *a.shape[-2:])).astype(dtype)
     right = np.broadcast_to(b, (*leading, *b.shape[-2:])).astype(dtype)
@@ -276,11 +285,10 @@ def solve(a: Values, b: Values) -> npt.NDArray[Any]:
 
 
 def _eliminate(a: npt.NDArray[Any], b: npt.NDArray[Any]) -> None:
-    """Solve a x = b in place by Gauss-Jordan elimination; b becomes x."""
+    """Solve a x = b for exact numbers in place by Gauss-Jordan elimination; b becomes x."""
     n = a.shape[0]
     for i in range(n):
-        column = a[i:, i]
-        pivot = int(np.argmax(column != 0)) if a.dtype == object else int(np.argmax(np.abs(column)))
+        pivot = int(np.argmax(a[i:, i] != 0))
         if a[i + pivot, i] == 0:
             raise SingularError(f"a matrix of size {n} that has to be inverted is singular")
         a[[i, i + pivot]], b[[i, i + pivot]] = a[[i + pivot, i]], b[[i + pivot, i]]

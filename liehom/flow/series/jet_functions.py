@@ -412,19 +412,14 @@ def _solve(a: Operand, b: Operand) -> Jet:
     return solutions[..., 0] if vector else solutions
 
 
-def _identity(a: Jet) -> npt.NDArray[Any]:
-    eye = np.eye(a.shape[-1], dtype=int)
-    return zeros(a.value, a.shape) + (eye.astype(object) if a.dtype == object else eye.astype(a.dtype))
-
-
 def _inverse(a: Jet) -> Jet:
-    return _solve(a, Jet.constant(_identity(a), a.order))
+    return _solve(a, Jet.constant(recurrences.identities(a.value), a.order))
 
 
 def _matrix_power(a: Jet, n: int) -> Jet:
     if n < 0:
         return _matrix_power(_inverse(a), -n)
-    power = Jet.constant(_identity(a), a.order)
+    power = Jet.constant(recurrences.identities(a.value), a.order)
     for bit in bin(n)[2:]:
         power = power @ power
         power = power @ a if bit == "1" else power
@@ -433,7 +428,7 @@ def _matrix_power(a: Jet, n: int) -> Jet:
 
 def _determinant(a: Jet) -> Operand:
     """Determinant of matrices (..., n, n), by the recursion for the characteristic polynomial."""
-    n, one = a.shape[-1], _identity(a)
+    n, one = a.shape[-1], recurrences.identities(a.value)
     power, coefficient = Jet.constant(zeros(a.value, a.shape), a.order), zeros(a.value, a.shape[:-2]) + 1
     for k in range(1, n + 1):
         power = a @ power + coefficient[..., None, None] * one
@@ -526,11 +521,7 @@ HOOKS.update(ufunc=apply_ufunc, function=apply_function, method=method)
 
 
 def expanded_by_jax(function: Callable[..., Values], *operands: Jet | Values) -> Jet:
-    """The Jet of function(a, b, ...) for Jets, or arrays, whose values are JAX arrays.
-
-    Coefficient k is computed from the coefficients up to k of the operands, without those computed before. So the
-    expansion to order n costs O(n^3) operations. Functions written with numpy cost O(n^2).
-    """
+    """The Jet of function(a, b, ...) for Jets, or arrays, whose values are JAX arrays, in O(n^3) operations."""
     jet: Any = import_module("jax.experimental.jet")
     jnp = import_module("jax.numpy")
     nodes = [x.node for x in operands if isinstance(x, Jet)]

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Hashable, Iterable, Sequence
 from fractions import Fraction
 from math import factorial
-from typing import Any, TypeAlias, final
+from operator import matmul
+from typing import Any, TypeAlias
 
 import flint
 import numpy as np
@@ -27,7 +28,6 @@ DENSE_FROM_FRACTION = 0.2
 entries is not 0."""
 
 
-@final
 class Bilinear:
     """Bilinear map K^a x K^b -> K^c with constant coefficients.
 
@@ -73,13 +73,11 @@ class Bilinear:
 
     def __call__(self, x: NumbersLike, y: NumbersLike) -> Any:
         """B(x, y), array of shape (..., c), for x (..., a) and y (..., b); a Jet if x or y is one."""
-        a, b = (v if isinstance(v, Jet) else _values_of(v) for v in (x, y))
-        for v, length in zip((a, b), self.shape, strict=False):
-            if not v.shape or v.shape[-1] != length:
-                raise ShapeError(f"an argument of shape {v.shape}, expected (..., {length}) for a map of {self.shape}")
+        a, b = values_of(x), values_of(y)
+        self._check(a.shape, b.shape)
         if isinstance(a, Jet):
             if isinstance(b, Jet):
-                return Jet.from_node(recurrences.multilinear(self._apply, [a.node, b.node]))
+                return Jet.from_node(recurrences.bilinear(self._apply, a.node, b.node, self._zero(a.node, b.node)))
             right = owned(b)
             return Jet.from_node(recurrences.linear(lambda left: self._apply(left, right), [a.node]))
         if isinstance(b, Jet):
@@ -87,7 +85,21 @@ class Bilinear:
             return Jet.from_node(recurrences.linear(lambda right: self._apply(left, right), [b.node]))
         return self._apply(a, b)
 
-    def left(self, x: NumbersLike) -> npt.NDArray[Any]:
+    def _check(self, x: tuple[int, ...], y: tuple[int, ...]) -> None:
+        a, b, _ = self.shape
+        if not x or not y or x[-1] != a or y[-1] != b:
+            raise ShapeError(
+                f"arguments of shapes {x} and {y}, expected (..., {a}) and (..., {b}), components on the last axis"
+            )
+
+    def _zero(self, x: Node, y: Node) -> Values | None:
+        """Zeros of the shape of B(x, y) if x or y is 0 at 0 and both are numpy arrays of one dtype, else None."""
+        a, b = x.value, y.value
+        if (x.known[0] is None or y.known[0] is None) and type(a) is type(b) is np.ndarray and a.dtype == b.dtype:
+            return zeros(a, (*np.broadcast_shapes(a.shape[:-1], b.shape[:-1]), self.shape[2])) if a.size else None
+        return None
+
+    def left(self, x: NumbersLike) -> Values:
         """The matrix of y -> B(x, y), shape (..., c, b).
 
         Examples
@@ -97,12 +109,12 @@ class Bilinear:
         """
         return self._contracted("...i,ijk->...kj", x)
 
-    def right(self, y: NumbersLike) -> npt.NDArray[Any]:
+    def right(self, y: NumbersLike) -> Values:
         """The matrix of x -> B(x, y), shape (..., c, a)."""
         return self._contracted("...j,ijk->...ki", y)
 
     def _contracted(self, subscripts: str, x: NumbersLike) -> npt.NDArray[Any]:
-        factor = x if isinstance(x, Jet) else _values_of(x)
+        factor = values_of(x)
         xp, value = (np, factor.value) if isinstance(factor, Jet) else (namespace(factor), factor)
         tensor = self._cached("tensor", value, lambda: self._filled(self._coefficients(value)))
         return xp.einsum(subscripts, factor, tensor)
@@ -112,9 +124,9 @@ class Bilinear:
         np.add.at(out, (self._i, self._j, self._k), values)
         return out
 
-    def _apply(self, x: npt.NDArray[Any], y: npt.NDArray[Any]) -> npt.NDArray[Any]:
+    def _apply(self, x: Values, y: Any) -> Values:
         a, b, c = self.shape
-        kind = x if x.dtype == y.dtype else np.broadcast_to(np.zeros((), np.result_type(x.dtype, y.dtype)), (1,))
+        kind: Any = x if x.dtype == y.dtype else np.broadcast_to(np.zeros((), np.result_type(x.dtype, y.dtype)), (1,))
         if kind.dtype == object:
             kind = x if x.dtype == object else y
         elif self._dense:
@@ -123,7 +135,9 @@ class Bilinear:
                 pairs = x[..., :, None] * y[..., None, :]
                 xp, flat = namespace(pairs), pairs.reshape(*pairs.shape[:-2], a * b)
                 return flat @ (matrix if xp is np else xp.asarray(matrix))
-        products = x[..., self._i] * y[..., self._j] * self._cached("values", kind, lambda: self._coefficients(kind))
+        products: Any = (
+            x[..., self._i] * y[..., self._j] * self._cached("values", kind, lambda: self._coefficients(kind))
+        )
         return self._collected(products, kind)
 
     def _collected(self, products: npt.NDArray[Any], kind: npt.NDArray[Any]) -> npt.NDArray[Any]:
@@ -160,8 +174,9 @@ class Bilinear:
         return self._cache[key]
 
 
-def _values_of(x: NumbersLike) -> npt.NDArray[Any]:
-    return x if type(x) is np.ndarray and x.dtype.kind in "fcO" else as_values(x)
+def values_of(x: NumbersLike) -> Any:
+    """A Jet, or an array of floats or exact numbers."""
+    return x if isinstance(x, Jet) or (type(x) is np.ndarray and x.dtype.kind in "fcO") else as_values(x)
 
 
 # Series in Lie algebras: dexp and its inverse, Magnus, Baker-Campbell-Hausdorff, Cayley, to any order.
@@ -322,28 +337,22 @@ def dcayley_inverse(x: Values, y: Values) -> Values:
 def cayley_series(x: Jet) -> Jet:
     """cay(x(t)) = (1 - x/2)^-1 (1 + x/2) for matrices x(t) (..., n, n) with x(0) = 0, else `SeriesError`.
 
-    From y = 1 + x (1 + y)/2: y_k = x_k + (1/2) sum_(0 < i < k) x_i y_(k-i).
-
     Examples
     --------
     >>> cayley_series(Jet([[[0.0]], [[1.0]], [[0.0]], [[0.0]]])).coefficients.ravel()
     array([1.  , 1.  , 0.5 , 0.25])
     """
-    node = _square_matrices(without_constant(x, check=True)).node
-    one = _identity(node.value)
-    result = Node(node.order, one, [one])
+    x = _square_matrices(without_constant(x, check=True))
+    return cayley_moved(matmul, x, recurrences.identities(x.node.value))
 
-    def rule(k: int) -> Coefficient:
-        total = None
-        for i in range(1, k):
-            if node.known[i] is not None and result.known[k - i] is not None:
-                total = plus(total, node.known[i] @ result.known[k - i])
-        if total is None:
-            return node.known[k]
-        return total / 2 if node.known[k] is None else node.known[k] + total / 2
 
-    result.depends((node, 0), (result, 1), rule=rule)
-    return Jet.from_node(result)
+def cayley_moved(action: Callable[[Any, Any], Any], x: Jet, m: Values) -> Jet:
+    """The Jet z = m + x (m + z)/2, coefficient by coefficient, for x without constant term."""
+    start: Any = m if isinstance(m, Jet) else Jet.constant(m, x.order)
+    z = Jet.growing(start.value, min(x.order, start.order))
+    right: Jet = start + action(x, start + z) / 2
+    z.node.depends((right.node, 0), rule=lambda k: right.node.known[k])
+    return z
 
 
 def cayley_magnus(a: Jet) -> Jet:
@@ -382,7 +391,7 @@ def log_series(y: Jet) -> Jet:
     array([ 0.        ,  1.        , -0.5       ,  0.33333333])
     """
     first = _square_matrices(y).value
-    if not is_traced(first) and bool(np.any(np.asarray(first != _identity(first)))):
+    if not is_traced(first) and bool(np.any(np.asarray(first != recurrences.identities(first)))):
         raise SeriesError("log_series needs y(0) = 1: for another value factor it out first")
     node = without_constant(y).node
     return _matrix_series(node, [Fraction((-1) ** (k + 1), k) for k in range(1, max(node.order, 1) + 1)], one=False)
@@ -393,7 +402,7 @@ def _matrix_series(node: Node, weights: list[Fraction], one: bool) -> Jet:
     powers = [node]
     for _ in weights[1:]:
         powers.append(recurrences.multilinear(lambda a, b: a @ b, [node, powers[-1]]))
-    return Jet.from_node(_weighted(powers, weights, _identity(node.value) if one else None))
+    return Jet.from_node(_weighted(powers, weights, recurrences.identities(node.value) if one else None))
 
 
 def magnus(bracket: Bracket, a: Jet) -> Jet:
@@ -504,9 +513,3 @@ def _square_matrices(x: Jet) -> Jet:
     if x.ndim < 2 or x.shape[-1] != x.shape[-2]:
         raise ShapeError(f"the values must be square matrices (..., n, n), got shape {x.shape}")
     return x
-
-
-def _identity(like: Values) -> npt.NDArray[Any]:
-    """Identity matrix with numbers of the kind of `like`, broadcast to its shape."""
-    eye = namespace(like).eye(like.shape[-1])
-    return zeros(like, tuple(like.shape)) + eye.astype(int if like.dtype == object else like.dtype)

@@ -333,6 +333,12 @@ def _one(value: Values) -> Values:
     return zeros(value, ()) + 1
 
 
+def identities(like: Values) -> Values:
+    """Identity matrices with numbers of the kind of `like`, broadcast to its shape (..., n, n)."""
+    eye = namespace(like).eye(like.shape[-1])
+    return zeros(like, tuple(like.shape)) + eye.astype(int if like.dtype == object else like.dtype)
+
+
 def _over_one(node: Node) -> Node:
     return quotient(constant(_one(node.value), node.order), node)
 

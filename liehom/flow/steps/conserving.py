@@ -188,10 +188,7 @@ class _Made(NamedTuple):
 
 @final
 class ConservingStep(LocalStep):
-    """A conserving step at one point, as a function of h, for each of which the correction is computed.
-
-    `found` is chi_m, and `target` the value at which F is to be, shape (..., k), or None for F(m).
-    """
+    """A conserving step at one point, by chi_m, and the value (..., k) at which F is to be, or None for F(m)."""
 
     def __init__(self, base: LocalStep, found: Conservation, target: Values | None, *, one_exponential: bool) -> None:
         super().__init__(base.action, base.m, clock=base.clock)
@@ -544,7 +541,7 @@ class Conserving(Derived):
         chi = Conservation(action, known.integral, frame, m, psi.field.psi(m, time), factor)
         target = known.target
         if type(m) is Traced:
-            target = self._traced_target(known.integral, m)
+            target = self._target(known.integral, m)
         elif psi.start is not None and psi.start is not known.start:  # some trajectories of the run
             target = self._target(known.integral, psi.start)
         return ConservingStep(local, chi, target, one_exponential=self.one_exponential)
@@ -553,18 +550,12 @@ class Conserving(Derived):
         """The values of F at which trajectories from these points aim; None for F(m)."""
         if self.aim == "previous":
             return None
+        if isinstance(start, Traced) and self._value is None:  # a number of each trajectory
+            return Traced(start.tape, [start.tape.trajectory_constant(lambda points: integral(points)[..., 0])])
+        if isinstance(start, Traced) and self._value is not None and self._value.size > 1:
+            raise TraceError("a value of F for each trajectory is not compiled: give one, or leave it to the start")
         value = integral(start)
         return value if self._value is None else _aimed_at(self._value, value)
-
-    def _traced_target(self, integral: FirstIntegral, m: Traced) -> Values | None:
-        """Target of a traced step, a number of each trajectory; None for F(m)."""
-        if self.aim == "previous":
-            return None
-        if self._value is not None:
-            if self._value.size > 1:
-                raise TraceError("a value of F for each trajectory is not compiled: give one, or leave it to the start")
-            return _aimed_at(self._value.reshape(()), integral(m))
-        return Traced(m.tape, [m.tape.trajectory_constant(lambda points: integral(points)[..., 0])])
 
     def __repr__(self) -> str:
         source = repr(self._source) if isinstance(self._source, str) else _shown(self._source)

@@ -14,7 +14,7 @@ from liehom.base.errors import InputError, checked_integer
 from liehom.base.typing import BooleanArray, IntegerArray, Real, Values
 from liehom.flow.action.field import GeneratorField, check_point
 from liehom.flow.action.space import Action, IsotropyFrame
-from liehom.flow.series.arrays import as_values, is_exact, is_jax, is_lazy, is_traced, namespace, zeros
+from liehom.flow.series.arrays import as_values, is_exact, is_jax, is_lazy, is_traced, namespace, norm, zeros
 from liehom.flow.steps.expansion import ROUND_OFF_UNITS, Clock, Flow, at_rest, flow_series, leading_order, vanishing
 from liehom.flow.steps.range_solver import RangeSolver, TightFrameSolver
 from liehom.flow.steps.step import (
@@ -54,10 +54,10 @@ REFINEMENTS = 2
 def isotropy_fraction(action: Action, flow: Flow, leading: int, order: int) -> Values:
     """Fraction s(rate t_1) of each correction that isotropy makes, shape (...,)."""
     xp = namespace(flow.points.value)
-    first = leading * norm(xp, flow.point(leading))
+    first = leading * norm(flow.point(leading))
     scale: Any = xp.zeros_like(first) + np.inf
     for k in range(leading + 1, order + 1):
-        later = k * norm(xp, flow.point(k))
+        later = k * norm(flow.point(k))
         ratio = xp.where(later > 0, first / xp.where(later > 0, later, 1.0), np.inf)
         scale = xp.minimum(scale, ratio ** (1 / (k - leading)))
     rate: Any = xp.zeros_like(first)
@@ -87,11 +87,6 @@ def least_generator(frame: IsotropyFrame, v: Values) -> Values:
     """The smallest generator x with rho(x) m = the tangential part of v, shape (..., dim g)."""
     down = namespace(v).swapaxes(frame.tangent, -1, -2)
     return (frame.lift @ (down @ v[..., None]))[..., 0]
-
-
-def norm(xp: ModuleType, x: Values) -> Values:
-    """Euclidean norms of x (..., N), shape (...,)."""
-    return xp.sqrt(xp.sum(x * x, axis=-1))
 
 
 # The recursion over orders at a point, or at one point of each trajectory, that `correct` runs. At level n the
@@ -197,7 +192,7 @@ class OrderRecursion:
         difference = self.difference(n)
         if self.active is not None and not all(isinstance(part.solver, TightFrameSolver) for part in self.parts):
             # where a lower order was not solved, what is left at this one is part of the error
-            self.defects.append((n, self.xp.where(self.active, 0.0, norm(self.xp, difference))))
+            self.defects.append((n, self.xp.where(self.active, 0.0, norm(difference))))
         changed: dict[int, Values] = {}
         for part in self.parts:
             here = _both(self.active, part.here)
@@ -241,8 +236,8 @@ class OrderRecursion:
         suspicious = relative > SOLVED_RTOL / 10
         if is_lazy(relative) or bool(np.any(suspicious)):
             # scaled, so that squares do not underflow
-            left = norm(xp, residual / scale[..., None])
-            exact = left / xp.maximum(norm(xp, difference / scale[..., None]), 1.0)
+            left = norm(residual / scale[..., None])
+            exact = left / xp.maximum(norm(difference / scale[..., None]), 1.0)
             exact = _masked(xp, here, exact[..., None])[..., 0]
             noise = round_off(self.action, self.m, self.flow, self._factors, n)
             exact = xp.where(left * scale > noise, exact, 0.0)
@@ -263,7 +258,7 @@ def round_off(action: Action, m: Values, flow: Flow, factors: Factors | None, n:
     """
     xp = namespace(m)
     expanded: Any = factors
-    rates, terms = [xp.zeros(m.shape[:-1], dtype=m.dtype)], [norm(xp, m)]
+    rates, terms = [xp.zeros(m.shape[:-1], dtype=m.dtype)], [norm(m)]
     for k in range(1, n + 1):
         own = generator_norm(action, flow.psi(k - 1))
         step: Any = own if factors is None else k * sum(generator_norm(action, x.coefficient(k)) for x in expanded)
@@ -446,18 +441,8 @@ def correction(
             "corrections are computed in floats: give the point in floats, or use liehom.steps.order_condition"
         )
     dimension = check_point(field.representation, point)
-    action = Action(field.representation, exponential)
-    local = step.at(action, Generator(field, dimension), point, np.asarray(t)[..., None])
-    recursion = OrderRecursion(
-        action,
-        flow_series(field, point, order, t),
-        local,
-        point,
-        orbit_dimension=dimension,
-        weight=weight,
-        one_exponential=step.one_exponential,
-    )
-    return correct(recursion, step.order, order)
+    psi, raised = Generator(field, dimension), Corrected(step, order, weight=weight)
+    return raised.at(Action(field.representation, exponential), psi, point, np.asarray(t)[..., None]).correction
 
 
 def correct(recursion: OrderRecursion, base_order: int, order: int) -> Correction:
@@ -465,7 +450,7 @@ def correct(recursion: OrderRecursion, base_order: int, order: int) -> Correctio
     for n in range(base_order + 1, order + 1):
         recursion.level(n)
     xp, defects = recursion.xp, recursion.defects
-    defects += [(k, norm(xp, recursion.difference(k))) for k in range(order + 1, recursion.total + 1)]
+    defects += [(k, norm(recursion.difference(k))) for k in range(order + 1, recursion.total + 1)]
     leading = recursion.leading if recursion.moving is None else xp.where(recursion.moving, 1, 0)
     return Correction(
         tuple(recursion.zeta.node.known[: order + 1]),

@@ -7,10 +7,9 @@ from typing import Any, TypeAlias, final
 
 import numpy as np
 
-from liehom.base.errors import InputError, LiehomError, ShapeError, displayed
+from liehom.base.errors import InputError, ShapeError, displayed
 from liehom.base.typing import IntegerArray, Real, Values
-from liehom.flow.action.components import joined
-from liehom.flow.action.field import GeneratorField, check_point
+from liehom.flow.action.field import GeneratorField, check_point, recorded
 from liehom.flow.action.maps import action_map
 from liehom.flow.action.space import Action
 from liehom.flow.door import Representation
@@ -95,7 +94,7 @@ class Submanifold:
         >>> Submanifold.level_set(lambda m: np.sum(m * m * [1.0, 2.0, 3.0], axis=-1), 3)
         <submanifold: level set of <lambda> in R^3>
         """
-        slopes = _recorded(f, size)[1]
+        slopes = _differentiated(f, size)[1]
 
         def columns(curve: Jet) -> Jet:
             return _stacked([_stacked(evaluated(row, _inputs(curve))) for row in slopes])
@@ -123,7 +122,7 @@ class Submanifold:
         >>> Submanifold.embedded(torus, 2)
         <submanifold: image of torus in R^3>
         """
-        values, slopes = _recorded(f, dimension)
+        values, slopes = _differentiated(f, dimension)
 
         def place(curve: Jet) -> Jet:
             return _stacked(evaluated(values, _inputs(curve)))
@@ -228,17 +227,11 @@ def curvature_defect(flow: Jet, step: Jet, submanifold: Submanifold) -> Values:
     return second.coefficient(n) - first.coefficient(n)
 
 
-def _recorded(f: Callable[[Any], Any], size: int) -> tuple[list[Expr], list[list[Expr]]]:
+def _differentiated(f: Callable[[Any], Any], size: int) -> tuple[list[Expr], list[list[Expr]]]:
     """The values of a function as a graph, and their partial derivatives."""
     tape = Tape()
     inputs = Traced.inputs(tape, 0, size)
-    try:
-        outputs = joined(f(inputs), inputs)
-    except (LiehomError, TypeError, AttributeError, ValueError, IndexError) as error:
-        raise InputError(
-            f"{_name(f)} cannot be differentiated, because it does not run on tracers ({type(error).__name__}: "
-            f"{error}): write it with numpy functions"
-        ) from error
+    outputs = recorded(f, _name(f), inputs)
     if np.ndim(outputs) > 1:
         raise ShapeError(f"{_name(f)} has shape {np.shape(outputs)} at a point, expected () or (k,)")
     values = [x.entry for x in np.atleast_1d(Traced(tape, outputs))]

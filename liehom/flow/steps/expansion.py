@@ -161,14 +161,10 @@ def step_series(action: Action, local: LocalStep, m: Values, order: int, zeta: J
 
 @final
 class Clock:
-    """A time reparametrization ("clock") tau(t) = t + c_2 t^2 + ... and the coefficients of F_tau(t).
-
-    Each trajectory of an ensemble with the leading axes `shape` has its own.
-    """
+    """A clock tau(t) = t + c_2 t^2 + ... for each trajectory of an ensemble, and the coefficients of F_tau(t)."""
 
     def __init__(self, flow: Flow, order: int, shape: tuple[int, ...]) -> None:
         self._flow = flow
-        self.order = order
         one = zeros(flow.points.value, shape) + 1
         self.coefficients: list[Values | None] = [None, one, *[None] * (order - 1)]
         self._powers: dict[tuple[int, int], Values | None] = {}
@@ -208,11 +204,7 @@ class Clock:
 
 
 def leading_order(flow: Flow, order: int) -> Values:
-    """The smallest l with w_l != 0, shape (...,); 0 if all coefficients up to `order` vanish.
-
-    A coefficient counts as zero if it is below 64 units of round-off of the terms that it is the sum of. Exact
-    coefficients are compared with 0.
-    """
+    """The smallest l with w_l not `vanishing`, shape (...,); 0 if all coefficients up to `order` vanish."""
     leading: Any = np.zeros(flow.points.shape[:-1], dtype=int)
     # if w_1 = 0 for an autonomous field, the point is an equilibrium and all w_k vanish
     for k in range(1, order + 1 if flow.time_dependent else 2):

@@ -17,7 +17,7 @@ from liehom.flow.action.field import GeneratorField, check_point
 from liehom.flow.action.maps import action_map
 from liehom.flow.action.space import Action, IsotropyFrame
 from liehom.flow.door import Representation, Subalgebra, coadjoint
-from liehom.flow.series.arrays import as_values, is_exact, zeros
+from liehom.flow.series.arrays import as_values, is_exact, norm, zeros
 from liehom.flow.series.jet import Jet
 from liehom.flow.steps.expansion import ROUND_OFF_UNITS, Flow, flow_series
 from liehom.flow.steps.step import Step
@@ -254,12 +254,12 @@ class Conservation:
             tangential = self._on_tight_frame(frame)
         else:
             self.basis, tangential = frame.basis, self.gradient @ frame.tangent
-        sizes = _length(tangential)
-        kept = sizes > noise * _length(self.gradient)
+        sizes = norm(tangential)
+        kept = sizes > noise * norm(self.gradient)
         self._sizes = np.where(kept, sizes, 0.0)
         self.tangential: Array = np.where(kept[..., None], tangential / np.where(kept, sizes, 1.0)[..., None], 0.0)
         velocity = action.infinitesimal(generator, m)
-        self._take(velocity, _length(velocity) > noise * action.max_norm * _length(generator) * _length(m))
+        self._take(velocity, norm(velocity) > noise * action.max_norm * norm(generator) * norm(m))
 
     def _on_tight_frame(self, frame: IsotropyFrame) -> Values:
         """DF on the tangent space, for a frame without a basis of g_m; its rows have the same lengths."""
@@ -276,7 +276,7 @@ class Conservation:
         self._velocity, self.moving = velocity, moving
         pulled = self.action.infinitesimal.right_transposed(velocity[..., None, :], self._on_tangents)
         self.matrix = self.factor * (pulled @ self.basis)
-        self._bound = self.factor * self.action.max_norm * _length(velocity)[..., None] * self._sizes
+        self._bound = self.factor * self.action.max_norm * norm(velocity)[..., None] * self._sizes
 
     @property
     def hat(self) -> Values:
@@ -289,7 +289,7 @@ class Conservation:
 
     def _of_one(self) -> tuple[Values, Values]:
         """(|chi_m|, whether it counts as not 0), both of shape (..., 1), for one integral."""
-        size = _length(self.matrix)
+        size = norm(self.matrix)
         return size, self.moving[..., None] & (size > RANK_RTOL * self._bound)
 
     def toward(self, displacement: Values) -> Conservation:
@@ -299,13 +299,13 @@ class Conservation:
         of the leading coefficient of the flow. At an equilibrium it is round-off, and nothing changes.
         """
         other = copy(self)
-        moved = _length(displacement) > ROUND_OFF_UNITS * float(np.finfo(self.m.dtype).eps) * _length(self.m)
+        moved = norm(displacement) > ROUND_OFF_UNITS * float(np.finfo(self.m.dtype).eps) * norm(self.m)
         other._take(np.where(self.moving[..., None], self._velocity, displacement), self.moving | moved)
         return other
 
     def needs_motion(self, displacement: Values) -> None:
         """Require, in compiled code, that `toward` would change nothing; numpy takes the other steps."""
-        moved = _length(displacement) > ROUND_OFF_UNITS * float(np.finfo(np.float64).eps) * _length(self.m)
+        moved = norm(displacement) > ROUND_OFF_UNITS * float(np.finfo(np.float64).eps) * norm(self.m)
         settled: Any = self.moving | ~moved
         settled.tape.required.append(settled.entry)
 
@@ -332,7 +332,7 @@ class Conservation:
     def singular_values(self) -> Values:
         """Singular values of `hat`, decreasing, shape (..., min(k, s))."""
         if self.matrix.shape[-2] == 1:
-            return _length(self.hat)[..., : self.matrix.shape[-1]]
+            return norm(self.hat)[..., : self.matrix.shape[-1]]
         needs_one(self.hat)
         return np.linalg.svd(_double(self.hat), compute_uv=False)
 
@@ -476,10 +476,6 @@ def conservation_map(
     action = Action(field.representation)
     frame, factor = action.isotropy_frame(point, dimension), 0.5 if step.one_exponential else 1.0
     return Conservation(action, integral, frame, point, field.psi(point, t), factor)
-
-
-def _length(x: Values) -> Values:
-    return np.sqrt((x * x).sum(axis=-1))
 
 
 def _double(x: Values) -> Array:

@@ -252,8 +252,10 @@ def closed_form(
     FieldError
         If the representation is not over QQ, or a coefficient is a float.
 
-    Notes ----- Theorem 5 with its factor, one order after the other. The solution is the one with the smallest |c| and,
-    among those, the smallest |zeta|, as in `liehom.steps.correction`. If the system has no solution, `reached` is below
+    Notes
+    -----
+    Theorem 5 with its factor, one order after the other. The solution is the one with the smallest |c| and, among
+    those, the smallest |zeta|, as in `liehom.steps.correction`. If the system has no solution, `reached` is below
     `order`. With several constraints, factors are not unique: formulas are longer, and lose digits near equilibria. The
     first correction depends on the order of the orbit. If the orbits of the base have a higher order than its
     trajectories, zeta_k = 0 for the orders between, while c_k is not 0.

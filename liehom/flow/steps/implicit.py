@@ -138,14 +138,7 @@ def _parts(k: Stage) -> tuple[Any, Any]:
 MAX_VECTORS = 80  # largest dimension of a Krylov space; the solution of least residual in it is returned
 
 
-def gmres(
-    product: Callable[[Array], Array],
-    right: Array,
-    axes: tuple[int, ...],
-    *,
-    rtol: float = 1e-4,
-    most: int = MAX_VECTORS,
-) -> Array:
+def gmres(product: Callable[[Array], Array], right: Array, axes: tuple[int, ...], *, rtol: float = 1e-4) -> Array:
     """Approximate solutions of product(x) = right, of the shape of right, by the method of minimal residuals."""
 
     def norm(x: Array) -> Array:
@@ -155,7 +148,7 @@ def gmres(
     basis = [right / np.where(size > 0, size, 1.0)]
     columns: list[list[Array]] = []
     weights: list[Array] = []
-    for j in range(min(most, int(np.prod([right.shape[a] for a in axes])))):
+    for j in range(min(MAX_VECTORS, int(np.prod([right.shape[a] for a in axes])))):
         w = product(basis[j])
         column = []
         for v in basis:
@@ -194,7 +187,6 @@ def _least_squares(columns: list[list[Array]], size: Array) -> tuple[list[Array]
 # solutions of x = s F(A x) are then followed from s = 0 to 1, and the last one is that of the step.
 
 MAX_NEWTON_ITERATIONS = 60
-HASTY_ITERATIONS = 20  # iterations of a step that is cheaper to repeat with half its size
 MAX_DENSE = 48  # largest number of unknowns of one trajectory for elimination
 REFRESH = 0.03  # the derivative is evaluated again if the residual is multiplied by more than this
 FIRST_PART, MAX_PARTS = 1e-8, 400  # the first part of h on the way from 0, and the largest number of parts
@@ -206,16 +198,16 @@ CRAWLS = 1e-3
 
 
 def newton(
-    equation: Equation, start: Array, wanted: BooleanArray, reach: float, *, joint: bool = False, hasty: bool = False
+    equation: Equation, start: Array, wanted: BooleanArray, reach: float, *, joint: bool = False
 ) -> tuple[Array, BooleanArray, Array]:
     """The x, which of them are solutions to round-off, and the last changes, for the trajectories `wanted`."""
-    x, solved, change, repels = _newton_iterated(equation, start, wanted, reach, joint, guided=True, hasty=hasty)
-    if not hasty and bool((wanted & ~solved).any()):
+    x, solved, change, repels = _newton_iterated(equation, start, wanted, reach, joint, guided=True)
+    if bool((wanted & ~solved).any()):
         again, more, last, others = _newton_iterated(equation, start, wanted & ~solved, reach, joint, guided=False)
         x, solved, repels = np.where(more, again, x), solved | more, np.where(more, others, repels)
         change = np.where(more, 0.0, last)
     if bool((astray := wanted & solved & repels).any()):
-        followed, more = (x, ~wanted) if hasty else _followed(equation, x, astray, reach, joint)
+        followed, more = _followed(equation, x, astray, reach, joint)
         x, solved = np.where(more, followed, x), (solved & ~astray) | more
     return x, solved, change
 
@@ -244,7 +236,7 @@ def _followed(
 
 
 def _newton_iterated(
-    equation: Equation, x: Array, wanted: BooleanArray, reach: float, joint: bool, *, guided: bool, hasty: bool = False
+    equation: Equation, x: Array, wanted: BooleanArray, reach: float, joint: bool, *, guided: bool
 ) -> tuple[Array, BooleanArray, Array, BooleanArray]:
     axes = tuple(range(x.ndim)) if joint else (0, -1)
     system = _System(equation, x, axes, wanted)
@@ -254,7 +246,7 @@ def _newton_iterated(
     active, solved = wanted, np.zeros_like(wanted)
     stale, damping = wanted, np.zeros(np.shape(wanted), dtype=x.dtype)
     change, free = before, np.full(np.shape(wanted), not guided)
-    for _ in range(HASTY_ITERATIONS if hasty else MAX_NEWTON_ITERATIONS):
+    for _ in range(MAX_NEWTON_ITERATIONS):
         system.refresh(x, stale)
         step = system.solve(residual, damping)
         if not free.all():
@@ -400,25 +392,18 @@ def _newton_on_tape(
     equation: Equation, start: Values, tape: Tape, wanted: Tracer, reach: float
 ) -> tuple[Traced, Tracer]:
     """Newton's method in the lanes `wanted`, without the search for a direction that arrays have."""
-    shape = np.shape(start)
-    count = shape[0] * shape[1]
 
     def iteration(active: Tracer, x: Tracer, before: Tracer, solved: Tracer) -> tuple[list[Values], Values]:
-        residual = equation.value(x) - x
-        step: Tracer = np.linalg.solve(np.eye(count) - _whole(equation, x), residual.reshape(count)).reshape(shape)
-        length = np.sqrt((step * step).sum())
-        along = ((step * residual).sum() > 0) | (length <= ALONG * reach)
-        limited = length > reach
-        step = step * np.where(limited, reach / np.where(limited, length, 1.0), 1.0)
+        step, along, limited = _compiled_step(equation, x, reach)
         trial = x + step
         change, size = np.abs(step).max(), np.abs(trial).max()
         done = (change <= 2 * EPS * size) | (
             (change <= 1e4 * EPS * np.maximum(size, 1.0)) & ((change >= before / 2) | (change == 0))
         )
-        done = active & done & ~limited
+        done = active & done & ~limited[0, 0]
         x = np.where(active, trial, x)
         solved = solved | done
-        active = active & ~done & along & np.isfinite(change)
+        active = active & ~done & along[0, 0] & np.isfinite(change)
         return [active, x, np.where(active, change, before), solved], active
 
     first = [wanted, start, np.inf, tape.false]
@@ -426,12 +411,20 @@ def _newton_on_tape(
     return x, solved
 
 
-def _whole(equation: Equation, x: Tracer) -> Tracer:
-    """The derivative of F(A x), shape (S n, S n)."""
-    blocks: Tracer = equation.blocks(x)
-    (s, n), matrix = np.shape(x), equation.matrix
-    rows = [[blocks[i, a, b] * matrix[i, j] for j in range(s) for b in range(n)] for i in range(s) for a in range(n)]
-    return np.stack([np.stack(row) for row in rows])
+def _compiled_step(equation: Equation, x: Tracer, reach: float) -> tuple[Tracer, Tracer, Tracer]:
+    """The step of Newton's method at x (S, ..., n), at most the reach long, and, both of shape (1, ..., 1), whether it
+    goes along the pseudo-transient and whether it was longer.
+    """
+    xp, (s, *lead, n) = namespace(x), np.shape(x)
+    residual, matrix = equation.value(x) - x, xp.asarray(equation.matrix, dtype=x.dtype)
+    derivative = xp.einsum("i...ab,ij->...iajb", equation.blocks(x), matrix).reshape(*lead, s * n, s * n)
+    right = xp.moveaxis(residual, 0, -2).reshape(*lead, s * n, 1)
+    step = xp.linalg.solve(xp.eye(s * n, dtype=x.dtype) - derivative, right)
+    step = xp.moveaxis(step.reshape(*lead, s, n), -2, 0)
+    length = xp.sqrt(xp.sum(step * step, axis=(0, -1), keepdims=True))
+    along = (xp.sum(step * residual, axis=(0, -1), keepdims=True) > 0) | (length <= ALONG * reach)
+    limited = length > reach
+    return step * xp.where(limited, reach / xp.where(limited, length, 1.0), 1.0), along, limited
 
 
 def solved_by_jax(equation: Equation, start: Tracer, reach: float) -> Tracer:
@@ -439,30 +432,21 @@ def solved_by_jax(equation: Equation, start: Tracer, reach: float) -> Tracer:
     more step of Newton's method from the solution.
     """
     jax = import_module("jax")
-    jnp, (s, *lead, n) = jax.numpy, start.shape
-    if s * n > MAX_TRACED:
+    jnp = jax.numpy
+    if start.shape[0] * start.shape[-1] > MAX_TRACED:
         # a loop, as sixty copies of the function would take minutes to compile
         found = jax.lax.fori_loop(0, JAX_ITERATIONS, lambda _, x: equation.value(x), start)
         return jnp.where(_is_small(equation.value(found) - found, found), found, jnp.nan)
-    matrix, one = jnp.asarray(equation.matrix, start.dtype), jnp.eye(s * n, dtype=start.dtype)
-
-    def newton(x: Tracer) -> Tracer:
-        derivative = jnp.einsum("i...ab,ij->...iajb", equation.blocks(x), matrix).reshape(*lead, s * n, s * n)
-        right = jnp.moveaxis(equation.value(x) - x, 0, -2).reshape(*lead, s * n, 1)
-        return jnp.moveaxis(jnp.linalg.solve(one - derivative, right).reshape(*lead, s, n), -2, 0)
 
     def iteration(state: tuple[int, Tracer, Tracer]) -> tuple[int, Tracer, Tracer]:
         k, x, _ = state
-        step = newton(x)
-        length = jnp.sqrt(jnp.sum(step * step, axis=(0, -1), keepdims=True))
-        along = (jnp.sum(step * (equation.value(x) - x), axis=(0, -1), keepdims=True) > 0) | (length <= ALONG * reach)
-        step = step * jnp.where(length > reach, reach / jnp.where(length > reach, length, 1.0), 1.0)
+        step, along, _ = _compiled_step(equation, x, reach)
         step = jnp.where(along, step, jnp.nan)  # it would lead to another solution, far away
         return k + 1, x + step, jnp.all(_is_small(step, x) | ~jnp.isfinite(step))
 
     found = jax.lax.while_loop(lambda s: (s[0] < NEWTON_ITERATIONS) & ~s[2], iteration, (0, start, start.size == 0))[1]
     found = jax.lax.stop_gradient(found)
-    step = newton(found)
+    step, *_ = _compiled_step(equation, found, reach)
     return jnp.where(_is_small(jax.lax.stop_gradient(step), found), found + step, jnp.nan)
 
 
@@ -487,7 +471,6 @@ def solve_implicitly(
     *,
     rows: Sequence[SparseRow] | None = None,
     reach: float = 1.0,
-    hasty: bool = False,
 ) -> Values:
     """Solution x of x = function(x), where function has a factor h.
 
@@ -506,8 +489,6 @@ def solve_implicitly(
         depends on y_i only.
     reach : float
         The largest norm of a step of Newton's method.
-    hasty : bool
-        Whether to give up after few iterations, if a smaller step is tried then. Arrays only.
 
     Raises
     ------
@@ -545,7 +526,7 @@ def solve_implicitly(
     elif is_jax(start):
         x = solved_by_jax(equation, start, reach)
     else:
-        x = _solved(equation, np.asarray(start), reach, hasty)
+        x = _solved(equation, np.asarray(start), reach)
     return x if rows is not None else x[0][..., 0] if number else x[0]
 
 
@@ -562,13 +543,13 @@ def _solved_on_jets(function: Callable[[Any], Any], start: Values, order: int, r
     return x
 
 
-def _solved(equation: Equation, start: Array, reach: float, hasty: bool) -> Array:
+def _solved(equation: Equation, start: Array, reach: float) -> Array:
     """Solution (S, ..., n), by the fixed point iteration if that is fast, else by Newton's method."""
     with np.errstate(over="ignore", invalid="ignore"):  # divergence is reported below
         x, settled, change = _iterated(equation, start)
         if settled.all():
             return x
-        x, solved, change = newton(equation, np.where(settled, x, start), ~settled, reach, hasty=hasty)
+        x, solved, change = newton(equation, np.where(settled, x, start), ~settled, reach)
         solved = solved | settled
         if x.ndim > 2 and not (solved.all() and _is_solution(equation, x)) and _couples(equation, start):
             x, solved, change = newton(equation, start, np.ones((1,) * x.ndim, dtype=bool), reach, joint=True)

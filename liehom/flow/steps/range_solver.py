@@ -14,7 +14,7 @@ Then zeta = M^+ (r + l c u).
 from __future__ import annotations
 
 import math
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from types import ModuleType
 from typing import Any, final
 
@@ -106,17 +106,16 @@ class RangeSolver:
         square = xp.sum(rest * rest, axis=-1, keepdims=True)
         self._determined = square > REACHED_RTOL**2
         self._rest = xp.where(self._determined, rest / xp.where(self._determined, square, 1.0), 0.0)
-        self._values: Values | None = None
 
     @property
     def singular_value(self) -> Values:
         """The d-th singular value of [e rho(g_m) u, u], shape (...,); (6.2) holds if it is not 0."""
-        return _entry(self._xp, self._singular_values(), self._frame.orbit_dimension)
+        return _entry(self._xp, self._singular_values, self._frame.orbit_dimension)
 
     @property
     def rank(self) -> IntegerArray:
         """Rank of [e rho(g_m) u, u], shape (...,); the range condition holds if it is d."""
-        return (self._singular_values() > self._cutoff).sum(axis=-1)
+        return (self._singular_values > self._cutoff).sum(axis=-1)
 
     @property
     def matrix(self) -> Values:
@@ -216,10 +215,9 @@ class RangeSolver:
             diagonal = diagonal * gram[..., i, i]
         return (least < NEAR_CONE * at_point) & (at_point > REGULAR * diagonal)
 
+    @cached_property
     def _singular_values(self) -> Values:
-        if self._values is None:
-            self._values = self._xp.linalg.svd(_single(self.matrix), compute_uv=False)
-        return self._values
+        return self._xp.linalg.svd(_single(self.matrix), compute_uv=False)
 
     def solve(self, right: Values) -> tuple[Values, Values, Values]:
         """(zeta (..., dim g), c (...,), residual (..., N)); the residual is r - (e rho(zeta) w - l c w), tangential."""

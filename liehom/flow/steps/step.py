@@ -18,7 +18,7 @@ from liehom.flow.action.exponential import Exponential
 from liehom.flow.action.field import GeneratorField, check_point
 from liehom.flow.action.space import Action
 from liehom.flow.door import Representation
-from liehom.flow.series.arrays import as_values, is_exact, is_jax, namespace, zeros
+from liehom.flow.series.arrays import as_values, is_exact, is_jax, namespace, norm, zeros
 from liehom.flow.series.jet import Jet
 from liehom.flow.series.node import Node
 
@@ -73,9 +73,7 @@ def size_from_defects(
 
 def length(x: Values) -> Array:
     """2-norm over the last axis, in float64."""
-    values = floats(x)
-    root: Array = namespace(values).sqrt((values * values).sum(axis=-1))
-    return root
+    return norm(floats(x))  # type: ignore[return-value]
 
 
 def squared_length(x: Values, axes: int = 0) -> Array:
@@ -352,10 +350,7 @@ def with_correction(factors: Factors, zeta: Values | None, one_exponential: bool
 
 
 def moved_by_isotropy(local: LocalStep, h: Values, zeta: Values | None, one_exponential: bool) -> Values:
-    """Point after a step of size h (..., 1) with the isotropy zeta (..., dim g), as `with_correction` adds it.
-
-    For a step that is not a product of exponentials it is Exp(zeta) of the point after the step.
-    """
+    """Point after a step with the isotropy zeta added as by `with_correction`, or Exp(zeta) of the point after it."""
     if zeta is None:
         return local.point(h)
     if not local.has_factors:
@@ -566,10 +561,7 @@ def step_variable(order: int, like: Values) -> Jet:
 
 def zero_series(zero: Values, order: int) -> Jet:
     """The Jet 0 to an order, whose coefficients are to be replaced."""
-    series = Jet.growing(zero, order, zero=True)
-    for _ in range(order):
-        series.extend(None)
-    return series
+    return Jet.from_node(Node(order, zero, [None] * (order + 1)))
 
 
 def read_point(representation: Representation, m: ArrayLike) -> tuple[npt.NDArray[Any], IntegerArray]:

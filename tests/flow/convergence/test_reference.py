@@ -295,7 +295,7 @@ def test_what_the_distance_refuses() -> None:
         orbit_distance(ref, np.zeros((3, 3)), 1.0)
     with pytest.raises(InputError, match="finite"):
         orbit_distance(ref, np.full((4, 3), np.nan), 1.0)
-    with pytest.raises(InputError, match="not a number"):
+    with pytest.raises(InputError, match="expected a number"):
         orbit_distance(ref, sphere(4), "soon")
 
 

@@ -209,15 +209,14 @@ def test_a_field_is_needed() -> None:
 
 
 # -- times ---------------------------------------------------------------------------------------------------
-class Counted(Compared):
+def counted(compiles: bool, seconds: list[float], clock: list[float]) -> Compared:
     """A method without work, whose calls take given seconds."""
 
-    def __init__(self, compiles: bool, seconds: list[float], clock: list[float]) -> None:
-        self.label, self.compiles, self.seconds, self.clock = "counted", compiles, seconds, clock
-
-    def run(self, setting: Setting) -> Outcome:
-        self.clock[0] += self.seconds.pop(0)
+    def run(setting: Setting) -> Outcome:
+        clock[0] += seconds.pop(0)
         return Outcome(START, 1, 1)
+
+    return Compared("counted", run, compiles)
 
 
 @pytest.mark.parametrize(
@@ -236,7 +235,7 @@ def test_the_fastest_call_counts(
     clock = [0.0]
     clocks = SimpleNamespace(process_time=lambda: clock[0], perf_counter=lambda: clock[0])
     monkeypatch.setattr(sys.modules[timed_run.__module__], "time", clocks)
-    _, cpu, wall = timed_run(Counted(compiles, seconds, clock), Setting(dt=0.1), repeats)
+    _, cpu, wall = timed_run(counted(compiles, seconds, clock), Setting(dt=0.1), repeats)
     assert (cpu, wall, len(seconds)) == (wanted, wanted, left)
 
 

@@ -24,9 +24,10 @@ from liehom.flow.methods.runge_kutta import (
     RootedTree,
     Tableau,
     Violation,
-    densities,
+    checked_order,
     elementary_weights,
-    rooted_trees,
+    level_of,
+    tree_at,
 )
 from liehom.flow.methods.tableaux import collocation, gauss, tableau, tableau_names
 
@@ -40,12 +41,22 @@ def symmetry(tree: RootedTree) -> int:
     return prod(symmetry(t) ** k * factorial(k) for t, k in Counter(tree.children).items())
 
 
+def density(tree: RootedTree) -> int:
+    """gamma(t): the product, over the vertices, of the number of vertices from there upward."""
+    return tree.order * prod(map(density, tree.children))
+
+
+def rooted_trees(order: int) -> list[RootedTree]:
+    level = level_of(order)
+    return [tree_at(level.start + i) for i in range(level.count)]
+
+
 def canonical(tree: RootedTree) -> tuple[Any, ...]:
     return tuple(sorted(canonical(child) for child in tree.children))
 
 
 def test_counts_of_rooted_trees() -> None:
-    counts = [len(densities(n)) for n in range(1, MAX_ORDER + 1)]
+    counts = [level_of(n).count for n in range(1, MAX_ORDER + 1)]
     assert counts == [1, 1, 2, 4, 9, 20, 48, 115, 286, 719, 1842, 4766, 12486, 32973]
 
 
@@ -54,9 +65,9 @@ def test_each_tree_is_made_once_and_has_its_density(order: int) -> None:
     trees = rooted_trees(order)
     assert {tree.order for tree in trees} == {order}
     assert len({canonical(tree) for tree in trees}) == len(trees)
-    assert [tree.density for tree in trees] == densities(order).tolist()
+    assert [density(tree) for tree in trees] == level_of(order).density.tolist()
     # n! / (sigma gamma) labellings of t increase from the root; together they are the (n - 1)! increasing trees
-    labellings = [Fraction(factorial(order), symmetry(t) * t.density) for t in trees]
+    labellings = [Fraction(factorial(order), symmetry(t) * density(t)) for t in trees]
     assert all(x.denominator == 1 for x in labellings) and sum(labellings) == factorial(order - 1)
 
 
@@ -94,7 +105,7 @@ def test_elementary_weights_are_the_sums_of_the_textbook(entries: list[Fraction]
     a, b = [entries[0:3], entries[3:6], entries[6:9]], entries[9:12]
     expected = conditions_written_out(a, b)
     trees = [tree for n in range(1, 5) for tree in rooted_trees(n)]
-    assert [(t.density, elementary_weight(t, a, b)) for t in trees] == expected
+    assert [(density(t), elementary_weight(t, a, b)) for t in trees] == expected
     by_order = list(itertools.islice(elementary_weights(np.array(a, dtype=object), np.array(b, dtype=object)), 4))
     assert [x for level in by_order for x in level] == [x for _, x in expected]
     floats = list(itertools.islice(elementary_weights(np.array(a, dtype=float), np.array(b, dtype=float)), 4))
@@ -111,7 +122,7 @@ def test_weights_of_whole_orders_are_those_of_single_trees(name: str) -> None:
 def test_trees_refuse() -> None:
     for order in (0, MAX_ORDER + 1, 2.0, True, "3"):
         with pytest.raises(InputError, match="integer from 1"):
-            rooted_trees(order)  # type: ignore[arg-type]
+            checked_order(order)
 
 
 # -- the orders that are claimed -----------------------------------------------------------------------------

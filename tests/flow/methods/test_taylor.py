@@ -10,7 +10,7 @@ import pytest
 import liehom as lh
 from liehom.flow.action.field import check_point
 from liehom.flow.engines.llvm_engine import LlvmEngine
-from liehom.flow.methods.taylor import InvariantSeries, LandedSeries, Landing, TaylorSeries
+from liehom.flow.methods.taylor import InvariantSeries, LandedSeries, TaylorSeries
 from liehom.flow.steps.step import Generator
 from tests.flow.methods.test_every_method import problem
 from tests.flow.propagation import spaces
@@ -49,7 +49,7 @@ def run(manifold: str, step: Any, count: int, *, change: Any = None, by_exponent
     h = np.full((len(m), 1), np.longdouble(p.t) / count)
     for i in range(count):
         if by_exponentials:
-            step = step.with_prepared(_landing=Landing(None, None))
+            step = step.with_prepared(_prepared=True)
         local = step.at(action, psi, m, i * h)
         if change is not None:
             change(local)
