@@ -137,7 +137,7 @@ class _Column(NamedTuple):
     @property
     def is_single(self) -> bool:
         """Whether the products of this column are summed in the row of the image."""
-        return len(self.image) == 1 and abs(self.image[0][1]) == 1
+        return len(self.image) == 1
 
 
 def _columns(move: Callable[[Any, Any], Values], tape: Tape, n: int, count: int) -> list[_Column]:
@@ -171,8 +171,8 @@ def _by_columns(
         for l in _newest_last(0, k):
             for column, form in zip(columns, forms[k - l], strict=True):
                 if column.is_single:
-                    ((i, c),) = column.image
-                    total[i] = total[i] + c * (psi[l][column.generator] * form)
+                    i, c = column.image[0]
+                    total[i] = total[i] + c * psi[l][column.generator] * form
         for place, column in enumerate(columns):
             if not column.is_single:
                 product = _sum([psi[l][column.generator] * forms[k - l][place] for l in _newest_last(0, k)])
