@@ -8,13 +8,14 @@ Two forms of the recurrence are known, of which the one with fewer operations is
       (k + 1) x_(k+1) = sum_(0 < l < k) rho(psi'(x_l)) x_(k-l) + J x_k.
 
 * By columns, (k + 1) x_(k+1) = sum_(l <= k) rho(psi_l) x_(k-l), from the products of the entries of psi and of
-  coordinates, or of sums of coordinates whose columns in a matrix rho_a are the same.
+  coordinates, or of combinations of coordinates whose columns in a matrix rho_a are multiples of each other.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from functools import reduce
+from itertools import chain
 from operator import add
 from typing import Any, NamedTuple, TypeAlias, final
 
@@ -136,7 +137,7 @@ class _Column(NamedTuple):
 
     @property
     def is_single(self) -> bool:
-        """Whether the products of this column are summed in the row of the image."""
+        """Whether its products are summed in the row of the image, without a sum of their own."""
         return len(self.image) == 1
 
 
@@ -144,19 +145,19 @@ def _columns(move: Callable[[Any, Any], Values], tape: Tape, n: int, count: int)
     """The columns of the matrices rho_a."""
     vector: Any = move(Traced.inputs(tape, n, count), Traced.inputs(tape, 0, n))
     entries: dict[tuple[int, ...], list[tuple[int, float]]] = {}
-    for i, row in enumerate(_quadratics(list(vector.entries), n + count) or []):
+    for i, row in enumerate(_quadratics(list(vector.entries), n + count)):  # type: ignore[arg-type]  # it is bilinear
         for (j, a), c in row.items():
             entries.setdefault((a - n, j), []).append((i, c.value))
-    columns: list[_Column] = []
+    columns: list[list[_Column]] = [[] for _ in range(count)]
     for (a, j), image in entries.items():
-        for known in columns:
+        for known in columns[a]:
             ratio = image[0][1] / known.image[0][1]
-            if known.generator == a and image == [(i, ratio * c) for i, c in known.image]:
+            if image == [(i, ratio * c) for i, c in known.image]:
                 known.form.append((j, ratio))
                 break
         else:
-            columns.append(_Column(a, [(j, 1.0)], image))
-    return columns
+            columns[a].append(_Column(a, [(j, 1.0)], image))
+    return list(chain.from_iterable(columns))
 
 
 def _by_columns(
