@@ -6,7 +6,9 @@ import contextlib
 import ctypes
 import hashlib
 import os
+import platform
 import stat
+import struct
 import sys
 import warnings
 from collections.abc import Mapping, Sequence
@@ -28,6 +30,11 @@ from liehom.flow.tracing.run_text import FIELDS, FLOATS, Constant, run_module, s
 
 Engine: TypeAlias = Any  # an execution engine, or a target machine, of llvmlite, which has no types
 _ENGINES: dict[str, Engine] = {}
+NEAR = sys.platform == "linux" and platform.machine() == "x86_64"
+"""Whether code and constants are allocated as one piece: constants then cost no instructions of their own."""
+LIBRARY = sorted({*LIBM.values(), "memset", "memcpy", "malloc", "free", "floor", "ceil", "rint", "fmax", "fmin"})
+"""Functions of the C library that code may call, the last five on old processors."""
+ELF_SYMBOL = "<I2xH16x"  # its name and its section
 
 
 def lanes_per_register() -> int:
@@ -48,11 +55,15 @@ def _host() -> tuple[ModuleType, str, dict[str, bool]]:
     llvm.initialize_native_asmprinter()
     # where the functions of the C library are; on Windows they are in its universal runtime
     library = ctypes.CDLL("ucrtbase" if sys.platform == "win32" else None)
-    for symbol in sorted({*LIBM.values(), "memset", "memcpy", "malloc", "free"}):
+    for symbol in LIBRARY:
         llvm.add_symbol(symbol, ctypes.cast(getattr(library, symbol), ctypes.c_void_p).value)
     name, features = llvm.get_host_cpu_name(), llvm.get_host_cpu_features()
     triple = llvm.get_process_triple()
-    return llvm, f"{llvmlite.__version__}{llvm.llvm_version_info}{name}{features.flatten()}{triple}", dict(features)
+    return (
+        llvm,
+        f"{llvmlite.__version__}{llvm.llvm_version_info}{name}{features.flatten()}{triple} {NEAR}",
+        dict(features),
+    )
 
 
 def engine_of(text: str) -> tuple[Engine, bool]:
@@ -61,13 +72,11 @@ def engine_of(text: str) -> tuple[Engine, bool]:
     key = hashlib.sha256((stamp + text).encode()).hexdigest()
     if key in _ENGINES:
         return _ENGINES[key], True
-    target, features = llvm.Target.from_triple(llvm.get_process_triple()), llvm.get_host_cpu_features().flatten()
-    # an engine owns its machine
-    machine = target.create_target_machine(cpu=llvm.get_host_cpu_name(), features=features, opt=3, jit=True)
-    engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), machine)
+    machine = _target_machine(llvm)  # an engine owns its machine
+    engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), machine, use_lmm=NEAR or None)
     folder = _private_cache()
     cached = None if folder is None else _read(folder / f"{key}.o", key)
-    code = _compiled(llvm, machine, text) if cached is None else cached
+    code = _compiled(llvm, text) if cached is None else cached
     if cached is None and folder is not None:
         with contextlib.suppress(OSError):  # it is compiled again next time
             write_atomically(folder / f"{key}.o", _mark(key, code) + code)
@@ -77,7 +86,28 @@ def engine_of(text: str) -> tuple[Engine, bool]:
     return engine, cached is not None
 
 
-def _compiled(llvm: ModuleType, machine: Engine, text: str) -> bytes:
+def _target_machine(llvm: ModuleType, *, near: bool = False) -> Engine:
+    target, features = llvm.Target.from_triple(llvm.get_process_triple()), llvm.get_host_cpu_features().flatten()
+    model = {"reloc": "pic", "codemodel": "small"} if near else {}
+    return target.create_target_machine(cpu=llvm.get_host_cpu_name(), features=features, opt=3, jit=True, **model)
+
+
+def _compiled(llvm: ModuleType, text: str) -> bytes:
+    """The code of a module, with its constants next to it unless it calls a function, which is further away."""
+    near = NEAR and not any(f"@{name}(" in text for name in LIBRARY)
+    code = _emitted(llvm, _target_machine(llvm, near=near), text)
+    if near and _calls_out(llvm, code):  # LLVM calls a function of its own accord, as for a copy
+        return _emitted(llvm, _target_machine(llvm), text)
+    return code
+
+
+def _calls_out(llvm: ModuleType, code: bytes) -> bool:
+    """Whether an ELF object has symbols without a section: they are elsewhere, out of reach of the small code model."""
+    tables = [part.data() for part in llvm.ObjectFileRef.from_data(code).sections() if part.name() == ".symtab"]
+    return any(name and not section for table in tables for name, section in struct.iter_unpack(ELF_SYMBOL, table))
+
+
+def _emitted(llvm: ModuleType, machine: Engine, text: str) -> bytes:
     module = llvm.parse_assembly(text)
     module.verify()
     options = llvm.PipelineTuningOptions(2)

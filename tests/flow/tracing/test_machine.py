@@ -1,9 +1,12 @@
 """The cache of machine code: what is run was compiled from the same text, and nobody else can have written it."""
 
+import ctypes
+import math
 import os
 import warnings
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from liehom.flow.tracing import machine
@@ -63,3 +66,21 @@ def test_a_folder_of_another_user_is_not_used(folder: Path, monkeypatch: pytest.
     with pytest.warns(UserWarning, match="belongs to another user"):
         assert not kernel(4.0).cached
     assert {file: file.read_bytes() for file in folder.iterdir()} == content
+
+
+@pytest.mark.parametrize("name", ["sin", "memcpy"])
+def test_code_that_calls_functions_finds_them(name: str, folder: Path) -> None:
+    """There is no room for the way to them next to code whose constants are next to it; LLVM calls memcpy itself."""
+    declared, called = {
+        "sin": ("double @sin(double)", "%y = call double @sin(double 2.5)\n store double %y, ptr %to"),
+        "memcpy": (
+            "void @llvm.memcpy.p0.p0.i64(ptr, ptr, i64, i1)",
+            "%n = load i64, ptr %from\n call void @llvm.memcpy.p0.p0.i64(ptr %to, ptr %from, i64 %n, i1 false)",
+        ),
+    }[name]
+    text = f"declare {declared}\ndefine void @run(ptr %from, ptr %to) {{\n {called}\n ret void\n}}"
+    engine, _ = machine.engine_of(text)
+    run = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p)(engine.get_function_address("run"))
+    given, found = np.array([16, 7]), np.zeros(2, dtype=int)
+    run(given.ctypes.data, found.ctypes.data)
+    assert found.view(float)[0] == math.sin(2.5) if name == "sin" else np.array_equal(found, given)
