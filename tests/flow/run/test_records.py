@@ -46,8 +46,9 @@ REPORTS: list[tuple[dict[str, Any], list[str]]] = [
      [FIRST, "order 3 NOT reached: the order stays 2 at 7 steps, largest relative residual 0.125",
       f"range condition: FAILS, {SINGULAR}", PLACE, "equilibria met at 4 steps: left as they are", LOST_TEXT, LAST,
       "sizes by the tolerance, blind"]),
-    ({"near_steps": 2, "unkept_from": 1.5, "stopped_at": 2.5, 
-      "diagnostics": (("way", "sum", 6.0), ("gap", "min", 0.5))}, [FIRST, "order 3 NOT kept: the path comes within two steps of the cone on which the range condition fails, "
+    ({"near_steps": 2, "unkept_from": 1.5, "stopped_at": 2.5,
+      "diagnostics": (("way", "sum", 6.0), ("gap", "min", 0.5))}, [
+      FIRST, "order 3 NOT kept: the path comes within two steps of the cone on which the range condition fails, "
       "first at t = 1.5", f"range condition: NEARLY FAILS, {SINGULAR}, checked up to t = 2.5, where the run stopped",
       PLACE, LAST, "way, sum over steps: 6", "gap, smallest: 0.5"]),
     ({"singular_at": None}, [FIRST, f"{HELD} (base order 1)", LAST]),
@@ -165,7 +166,7 @@ def test_requested_times_are_filled_when_a_step_passes_them() -> None:
 
 def test_a_trajectory_ends_at_the_event_that_fills_its_count() -> None:
     log = EventLog(2, (2,), 1)
-    rows = [(0, 0.5, 0, 0, True), (0, 0.25, 1, 1, True), (1, 0.5, 0, 0, True), (1, 0.5, 1, 0, True), 
+    rows = [(0, 0.5, 0, 0, True), (0, 0.25, 1, 1, True), (1, 0.5, 0, 0, True), (1, 0.5, 1, 0, True),
             (2, 0.5, 0, 0, True), (1, 0.75, 1, 0, True), (1, 0.25, 0, 1, False)]  # fmt: skip
     made = [
         Occurrence(step, s, event, lane, s, step + s, np.array([s]), counted) for step, s, event, lane, counted in rows
