@@ -18,6 +18,7 @@ from liehom.flow.convergence.costs import (
     Compared,
     Outcome,
     Setting,
+    StepMethod,
     WorkPrecisionRow,
     WorkPrecisionTable,
     timed_run,
@@ -293,3 +294,13 @@ def test_studies_without_a_meaning_are_refused(y0: Any, options: Any, match: str
     field = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m: -m / [1.0, 2.0, 3.0])
     with pytest.raises((InputError, ShapeError), match=match):
         lh.work_precision(field, ["rk4"], (0, 1), y0, dts=[0.5], **options)
+
+
+def test_a_lost_order_is_a_message_of_the_row() -> None:
+    field = lh.GeneratorField(lh.defining(lh.su(3)), [f"{k + 1}*m{k % 6}" for k in range(8)])
+    start = np.array([0.6, 0.0, 0.0, 0.48, 0.64, 0.0])
+    for step, said in ((lh.Heun(), ""), (lh.Corrected(lh.Euler(), 3), "order 3 was not kept")):
+        method = StepMethod("", step, lh.Propagator(field, step, engine="numpy"), (0.0, 1.0), start, 100)
+        outcome = method.run(Setting(dt=0.25))
+        assert (method.label, outcome.steps, bool(outcome.message)) == (repr(step), 4, bool(said))
+        assert said in outcome.message
