@@ -123,6 +123,14 @@ def test_the_dynkin_index_excludes_a_type() -> None:
     assert simple_ideals._types((8, 2, 17), 3, p) == ["A2"]
 
 
+def test_the_trace_forms_of_spin_representations() -> None:
+    p = 4194301
+    for n, (index, killing) in {7: (2, 10), 9: (4, 14)}.items():  # of so(7) on C^8 and of so(9) on C^16
+        span = span_of(lh.pauli.closure(rotations(n, 8 if n == 7 else 16)))
+        ideal = n * (n - 1) // 2, n // 2, index * pow(killing, -1, p) % p
+        assert ideals_modulo(span, span.basis(derived=True), p) == [ideal]
+
+
 def test_an_open_type_is_left_to_the_structure_theory(monkeypatch: pytest.MonkeyPatch) -> None:
     closure = lh.pauli.closure(rotations(7, 8))
     with_index = closure.describe()
