@@ -123,11 +123,11 @@ def test_the_dynkin_index_excludes_a_type() -> None:
     assert simple_ideals._types((8, 2, 17), 3, p) == ["A2"]
 
 
-def test_the_trace_forms_of_spin_representations() -> None:
+def test_the_trace_form_of_rotations_is_a_known_part_of_the_killing_form() -> None:
     p = 4194301
-    for n, (index, killing) in {7: (2, 10), 9: (4, 14)}.items():  # of so(7) on C^8 and of so(9) on C^16
-        span = span_of(lh.pauli.closure(rotations(n, 8 if n == 7 else 16)))
-        ideal = n * (n - 1) // 2, n // 2, index * pow(killing, -1, p) % p
+    for n, size in ((5, 8), (7, 8), (9, 16)):
+        span = span_of(lh.pauli.closure(rotations(n, size)))
+        ideal = n * (n - 1) // 2, n // 2, pow(n - 2, -1, p)
         assert ideals_modulo(span, span.basis(derived=True), p) == [ideal]
 
 
