@@ -3,7 +3,7 @@
     python -m tests.results.answers > tests/results/answers.json
 
 Values are written out with their bases and matrices, and recorded by a digest if they are long. A method that takes
-longer than a twentieth of a second on one object is not asked there.
+longer than a twentieth of a second on one object is not asked there, except for three pages.
 """
 
 import inspect
@@ -19,7 +19,9 @@ import numpy as np
 
 import liehom as lh
 from liehom.base.errors import LiehomError
+from liehom.cli import objects
 from liehom.exact.scalars.field import Matrix
+from liehom.io.renderings import html
 from tests.results.values import digest
 
 FILE = Path(__file__).with_name("answers.json")
@@ -41,6 +43,7 @@ PAIRS = (
     *("so(4)/so(3)", "su(3)/T^2", "heisenberg(1)/R", "affine(S2(gl(2)))", "so(5)/so(3)+so(2)", "sl(3)/P1", "so(3)/0"),
     *("affine(sl(2,C))", "sp(2)/u(2)", "affine(form(1,-2))", "su(3)/u(2)", "sp(2)/sp(1)+u(1)"),
 )
+PAGES = ("so(4)/so(3)", "affine(sl(2,C))", "affine(form(1,-2))")
 REPRESENTATIONS: dict[str, Callable[[], lh.Representation]] = {
     "defining sl(2)": lambda: lh.defining(lh.sl(2)),
     "defining su(2)": lambda: lh.defining(lh.su(2)),
@@ -72,8 +75,22 @@ OF_PAIRS: dict[str, Callable[[lh.Pair], Any]] = {
     "open orbits": lh.orbits.open_orbit_count,
     "range condition": lh.range_condition,
     "forms": lambda pair: [pair.invariant_forms(k) for k in range(3)],
+    "page": lambda pair: lh.io.pair_page(pair).replace(lh.__version__, "VERSION"),
+    "as the command prints it": objects.pair_summary,
+    "facts": objects.pair_facts,
     "curvature": lambda pair: pair.invariant_metrics()([1] * pair.invariant_metrics().dimension).ricci(),
 }
+
+OF_ALGEBRAS: dict[str, Callable[[lh.LieAlgebra], Any]] = {
+    "GAP": lh.io.to_gap, "Sage": lh.io.to_sage, "facts": objects.algebra_facts,
+}  # fmt: skip
+OF_REPRESENTATIONS: dict[str, Callable[[lh.Representation], Any]] = {
+    "as the command prints it": objects.representation_summary, "facts": objects.representation_facts,
+}  # fmt: skip
+OF_ALL: dict[str, Callable[[Any], Any]] = {"LaTeX": lh.io.latex, "HTML": html, "file": lh.io.to_json}
+MORE: dict[type, dict[str, Callable[[Any], Any]]] = {
+    lh.Pair: OF_PAIRS, lh.LieAlgebra: OF_ALGEBRAS, lh.Representation: OF_REPRESENTATIONS,
+}  # fmt: skip
 
 
 def text(value: Any) -> str:
@@ -107,8 +124,7 @@ def questions(item: Any) -> Iterator[tuple[str, Callable[[], Any]]]:
             parameters = list(inspect.signature(getattr(kind, name)).parameters.values())[1:]
             if all(p.default is not p.empty or p.kind in (p.VAR_POSITIONAL, p.VAR_KEYWORD) for p in parameters):
                 yield name, getattr(item, name)
-    if kind is lh.Pair:
-        yield from ((name, partial(ask, item)) for name, ask in OF_PAIRS.items())
+    yield from ((name, partial(ask, item)) for name, ask in (MORE.get(kind, {}) | OF_ALL).items())
 
 
 def answer(ask: Callable[[], Any]) -> str:
@@ -127,7 +143,8 @@ def recorded(name: str) -> dict[str, str]:
         ask = dict(questions(OBJECTS[name]()))[question]
         begin = time.process_time()
         said = answer(ask)
-        if time.process_time() - begin < LONGEST and " at 0x" not in said:
+        longest = 0.3 if question == "page" and name in PAGES else LONGEST
+        if time.process_time() - begin < longest and " at 0x" not in said:
             found[question] = said
     return found
 

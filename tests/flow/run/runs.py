@@ -68,6 +68,7 @@ def run(field: Callable[[], lh.GeneratorField], end: Any = 1.0, shape: Any = Non
         "warnings": [f"{x.category.__name__}: {x.message}" for x in caught],
         "end": np.vectorize(lambda x: f"{x + 0.0:.8e}")(sol.y_end).ravel().tolist(),
         "events": [] if sol.t_events is None else [np.size(x) for x in sol.t_events],
+        "summary": str(sol).splitlines() if isinstance(options.get("events"), list) else [],
         "report": re.sub(r"-?\d[\d.]*e-1\d", "0", str(sol.report)).splitlines(),
     }  # fmt: skip
 
@@ -98,7 +99,7 @@ CASES: dict[str, Callable[[], dict[str, Any]]] = {
     "ensemble, compiled": partial(run, sphere, shape=4, step="rk45", engine="llvm"),
     "compiled": partial(run, sphere, step=lh.Corrected(lh.Heun(), 4), engine="llvm"),
     "ensemble corrected": partial(run, sphere, shape=4, step=lh.Corrected(lh.Heun(), 4)),
-    "events": partial(run, sphere, end=5.0, events=zero),
+    "events": partial(run, sphere, end=5.0, events=[zero]),
     "conserving": partial(run, body, step=lh.steps.Conserving(lh.Heun(), RIGID), dt=0.25),
     "conserving, adaptive": partial(run, body, step=lh.steps.Conserving(lh.RKMK("rk45"), RIGID)),
     "stiff": partial(run, sphere, step="radau5", rtol=1e-4),
