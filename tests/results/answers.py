@@ -3,7 +3,7 @@
     python -m tests.results.answers > tests/results/answers.json
 
 Values are written out with their bases and matrices, and recorded by a digest if they are long. A method that takes
-longer than a twentieth of a second on one object is not asked there, except for three pages.
+longer than a twentieth of a second on one object is not asked there.
 """
 
 import inspect
@@ -43,7 +43,6 @@ PAIRS = (
     *("so(4)/so(3)", "su(3)/T^2", "heisenberg(1)/R", "affine(S2(gl(2)))", "so(5)/so(3)+so(2)", "sl(3)/P1", "so(3)/0"),
     *("affine(sl(2,C))", "sp(2)/u(2)", "affine(form(1,-2))", "su(3)/u(2)", "sp(2)/sp(1)+u(1)"),
 )
-PAGES = ("so(4)/so(3)", "affine(sl(2,C))", "affine(form(1,-2))")
 REPRESENTATIONS: dict[str, Callable[[], lh.Representation]] = {
     "defining sl(2)": lambda: lh.defining(lh.sl(2)),
     "defining su(2)": lambda: lh.defining(lh.su(2)),
@@ -75,7 +74,6 @@ OF_PAIRS: dict[str, Callable[[lh.Pair], Any]] = {
     "open orbits": lh.orbits.open_orbit_count,
     "range condition": lh.range_condition,
     "forms": lambda pair: [pair.invariant_forms(k) for k in range(3)],
-    "page": lambda pair: lh.io.pair_page(pair).replace(lh.__version__, "VERSION"),
     "as the command prints it": objects.pair_summary,
     "facts": objects.pair_facts,
     "curvature": lambda pair: pair.invariant_metrics()([1] * pair.invariant_metrics().dimension).ricci(),
@@ -143,8 +141,7 @@ def recorded(name: str) -> dict[str, str]:
         ask = dict(questions(OBJECTS[name]()))[question]
         begin = time.process_time()
         said = answer(ask)
-        longest = 0.3 if question == "page" and name in PAGES else LONGEST
-        if time.process_time() - begin < longest and " at 0x" not in said:
+        if time.process_time() - begin < LONGEST and " at 0x" not in said:
             found[question] = said
     return found
 

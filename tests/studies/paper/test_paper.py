@@ -287,7 +287,7 @@ def test_panels_of_figures_3_to_5_show_both_the_errors_here_and_those_of_the_pap
             assert axes.get_title(loc="right") == key[0]
 
 
-DRAWN = ("fig1", "fig4", "fig7", "separatrix")
+DRAWN = ("fig4", "fig7", "separatrix")
 
 
 def drawn(name: str) -> list[str]:
