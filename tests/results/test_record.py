@@ -25,15 +25,7 @@ def difference(section: str, name: str) -> list[str]:
     return [line for line in lines if not any(key in line for key in FLOATS)]
 
 
-DEAR = ("so of diag(1, -1, 5, 7)", "powers of a matrix, 7")
-CASES = [
-    pytest.param(section, name, marks=[pytest.mark.slow] if name in DEAR else [])
-    for section, cases in record.SECTIONS.items()
-    for name in cases
-]
-
-
-@pytest.mark.parametrize(("section", "name"), CASES)
+@pytest.mark.parametrize(("section", "name"), [(s, name) for s, cases in record.SECTIONS.items() for name in cases])
 def test_exact_results_are_those_of_0_1_0(section: str, name: str) -> None:
     found = difference(section, name)
     assert not found, "\n".join(found) + ADVICE
