@@ -14,7 +14,7 @@ from typer.main import get_command
 from typer.testing import CliRunner, Result
 
 from liehom.cli import guard
-from liehom.cli.app import app
+from liehom.cli.app import TRY_FIRST, app
 from liehom.cli.help import Group, examples_in
 
 SLOW = ("plot", "show", "reproduce", "atlas build", "atlas families", "demo", "integrate", "order")
@@ -109,6 +109,16 @@ def test_without_arguments_it_says_what_to_try_first(width: int, monkeypatch: py
     shown = re.findall(r"^  (liehom .*?)(?:  .*)?$", result.stdout, flags=re.MULTILINE)
     assert 'liehom fullness "so(4)/so(3)"' in shown
     assert set(shown) - {"liehom --help"} <= set(EXAMPLES)
+
+
+def test_commands_to_try_have_their_words_beside_them_if_the_terminal_is_wide(monkeypatch: pytest.MonkeyPatch) -> None:
+    left, right = (max(len(row[i]) for row in TRY_FIRST) for i in (0, 1))
+    shown = []
+    for width in (left + right + 3, left + right + 4):
+        monkeypatch.setenv("COLUMNS", str(width))
+        shown.append(liehom().stdout.splitlines())
+    for line, says in TRY_FIRST:
+        assert f"  {line:<{left}}  {says}" in shown[1] and f"      {says}" in shown[0] and f"  {line}" in shown[0]
 
 
 def test_a_group_without_arguments_shows_its_help() -> None:

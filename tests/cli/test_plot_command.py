@@ -11,7 +11,9 @@ import pytest
 from typer.testing import CliRunner, Result
 
 import liehom as lh
+from liehom.base.errors import FormatError
 from liehom.cli.app import app
+from liehom.cli.inputs import check_plot_file
 from liehom.cli.plot_command import KINDS, Kind
 from liehom.plotting.canvas import new_figure
 
@@ -127,3 +129,11 @@ def test_without_matplotlib_the_extra_is_named(monkeypatch: pytest.MonkeyPatch) 
     result = liehom("plot", "dynkin", "G2", "-o", "x.png")
     assert (result.exit_code, result.stdout) == (2, "")
     assert "pip install matplotlib" in result.stderr
+
+
+def test_a_plot_that_exists_may_be_replaced(tmp_path: Path) -> None:
+    (tmp_path / "plot.png").touch()
+    check_plot_file(str(tmp_path / "plot.png"))
+    check_plot_file(None)
+    with pytest.raises(FormatError, match=r"must end in .*\.png"):
+        check_plot_file(str(tmp_path / "plot.txt"))

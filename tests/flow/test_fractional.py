@@ -104,3 +104,18 @@ def test_a_generator_may_depend_on_the_point():
 def test_refusals(call, says):
     with pytest.raises(lh.InputError, match=says):
         call()
+
+
+@pytest.mark.parametrize(("p", "q"), [(1, 1), (2, 1), (1, 2), (2, 2)])
+def test_generators_are_asked_at_the_matrix_itself(p, q):
+    """X' = X X0 X for a constant X0 has the solution X(t) = (1 - t X(0) X0)^-1 X(0)."""
+    x, below, asked = np.linspace(-0.3, 0.5, p * q).reshape(p, q), np.linspace(0.2, 0.7, p * q).reshape(q, p), []
+
+    def generator(point):
+        asked.append(np.asarray(point))
+        return np.block([[np.zeros((p, p)), np.zeros((p, q))], [-below, np.zeros((q, q))]]) + 0 * point[..., :1, :1]
+
+    flow = lh.LinearFractional(p, q, generator)
+    found = flow.value(flow.integrate((0, 0.5), x, rtol=1e-10, atol=1e-10, engine="numpy"))
+    np.testing.assert_allclose(found[-1], np.linalg.solve(np.eye(p) - 0.5 * x @ below, x), atol=1e-8)
+    np.testing.assert_allclose(asked[0].reshape(-1, p, q)[0], x, atol=1e-12)

@@ -96,6 +96,7 @@ def test_an_entry_of_an_antisymmetric_table_sets_both_orders() -> None:
         ("[ [ [ [ 1 ], [ 1/0 ] ] ], -1, 0 ]", "denominator 0"),
         ("[ [ [ [ 1 ], [ 0.5 ] ] ], -1, 0 ]", "is not read"),
         ("[" * 100, "nested too deeply"),
+        ("EmptySCTable(" * 10, "nested too deeply"),
         ('T := EmptySCTable( 2, 0, "symmetric" );', "EmptySCTable"),
         ("T := EmptySCTable( 10^6, 0 );", "is not read"),
         ("T := EmptySCTable( 2, 0 ); SetEntrySCTable( T, 1, 2, [ 1 ] );", r"entry \(1, 2\)"),

@@ -72,7 +72,7 @@ def test_a_function_has_the_code_of_its_mutant_until_it_is_given_back() -> None:
 
 def test_the_nearest_tests_of_a_module_are_recorded() -> None:
     assert tool.mirrored(ROOTS) == ROOT / "tests/exact/fullness/checker/test_verify_roots.py"
-    assert tool.mirrored("liehom/exact/fullness/search/forms.py") == ROOT / "tests/exact/fullness/search"
+    assert tool.mirrored("liehom/exact/fullness/search/dominance.py") == ROOT / "tests/exact/fullness/search"
 
 
 def test_equivalent_mutants_exist() -> None:

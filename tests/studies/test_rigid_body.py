@@ -177,3 +177,10 @@ def test_other_refusals() -> None:
         body.attitude([1.0, 0, 0], [1.0], np.diag([1, 1, -1]))
     with pytest.raises(lh.errors.ShapeError, match="attitude"):
         body.attitude([1.0, 0, 0], [1.0], np.eye(2))
+
+
+def test_attitudes_of_an_ensemble_at_time_0() -> None:
+    body, start = RigidBody([1, 2, 3]), np.diag([1.0, -1.0, -1.0])
+    for times in ([0.0], [0.0, 0.0]):
+        made = body.attitude(np.eye(3)[[0, 1]] + 0.1, times, start)
+        assert made.shape == (2, len(times), 3, 3) and (made == start).all()

@@ -224,3 +224,14 @@ def test_on_time_is_of_its_order_without_a_clock() -> None:
         step = lh.instances.NominalTimeCorrected(lh.Euler(), order)
         table = lh.observed_order(body.field("o"), m, step, [0.1, 0.05, 0.025], t_span=(0, 2), reference=reference)
         assert abs(slopes(table.dts, table.trajectory_errors)[-1] - order) < 0.15
+
+
+def test_steps_in_two_halves_take_the_time_of_both() -> None:
+    update, m = BODIES["triaxial"].exact_orbit(), unit(21, 200, 3)
+    for dt in (8.0, 16.0):
+        kept = orbit_step(BODIES["triaxial"], m).root(np.full((200, 1), dt))[1][..., 0]
+        after, passed = update.advance(m, dt)
+        between, first = update.advance(m, dt / 2)
+        last, second = update.advance(between, dt / 2)
+        assert 3 < (~kept).sum() < 197
+        assert np.allclose(passed[~kept], (first + second)[~kept]) and np.allclose(after[~kept], last[~kept])

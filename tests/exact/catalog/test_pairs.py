@@ -87,6 +87,21 @@ def test_signatures_of_blocks_decide_which_unitary_subalgebra_is_meant(name, sig
         lh.pair("su(2,2)/s(u(1,1)+u(2))")
 
 
+@pytest.mark.parametrize(("name", "signature"), [
+    ("su(3)/T^2", (0, 2)), ("so(5)/T^2", (0, 2)), ("so(4)/T^2", (0, 2)), ("sp(2)/T^2", (0, 2)),
+    ("so(5)/u(1;1,2)", (0, 1)), ("sp(2)/u(1;1,2)", (0, 1)), ("sp(3)/u(1)+sp(2)", (0, 11)), ("sp(2)/u(1)+u(1)", (0, 2)),
+    ("sp(3)/u(2)+sp(1)", (0, 7)), ("su(4)/sp(2)", (0, 10)), ("su(2,2)/sp(1,1)", (4, 6)), ("so*(6)/u(3)", (0, 9)),
+    ("sp(6,R)/gl(3)", (6, 3)), ("sp(6,R)/sp(2,R)+sp(4,R)", (8, 5)), ("sp(6,R)/u(3)", (0, 9)), ("sl(3,C)/sl(3)", (5, 3)),
+    ("so(4,C)/so(4)", (0, 6)), ("sp(4,C)/sp(2)", (0, 10)), ("sp(4,C)/sp(4,R)", (6, 4)), ("su(2,1)/so(2,1)", (2, 1)),
+    ("sl(5)/s(gl(2)+gl(2)+gl(1))", (6, 2)), ("su(4)/s(u(1)+u(1)+u(2))", (0, 5)), ("sp(2)/u(2)", (0, 4)),
+    ("su(3,1)/u(2,1)", (4, 5)), ("su(3,1)/u(3)", (0, 9)), ("su(2,2)/s(u(2,1)+u(0,1))", (4, 5)),
+])  # fmt: skip
+def test_tori_blocks_and_real_forms_have_the_signature_of_their_names(name: str, signature: tuple[int, int]) -> None:
+    pair = lh.pair(name)
+    basis = pair.subalgebra.basis
+    assert (basis @ pair.algebra.killing_form() @ basis.T).signature() == (*signature, 0)
+
+
 @pytest.mark.parametrize("n", range(2, 8))
 def test_spheres_are_orbits_of_points(n: int) -> None:
     assert lh.catalog.representation(f"so({n})").pair([0] * (n - 1) + [1]) == lh.pair(f"so({n})/so({n - 1})")
@@ -112,7 +127,11 @@ def test_the_subalgebra_is_the_real_form_that_its_name_says(name: str, signature
     "so(4)/so(5)", "so(4)/su(3)", "g2/so(5)", "so(3)", "affine(3)", "affine(so(3),so(2))", "affine(heisenberg(1))",
     "sym(4;3,2)", "sym(4;5,-1)", "sym(3;)", "sl(3)/P3", "so(3)/P", "so(2,1)/P2", "g2/P", "R/so(3)", "R/R^2", "quux/R",
     "e(3)/su(2)", "su(3)/u(3)", "su(2,1)/u(0,2)", "sl(4)/s(gl(2)+gl(3))", "sl(3)/s(u(2)+u(1))", "sp(4,R)/u(3)",
-    "sp(6,R)/sp(2,R)+sp(2,R)", "so(5)/so(4)+so(2)", "heisenberg(1)/R^2",
+    "sp(6,R)/sp(2,R)+sp(2,R)", "so(5)/so(4)+so(2)", "heisenberg(1)/R^2", "su(3)/u(1;0,0,0)", "su(3)/u(1;1,2)",
+    "su(3)/T^3", "su(3)/T^1", "so(5)/T^1", "sp(2)/u(1)+sp(2)", "so(4)/u(1)+sp(1)", "su(5)/sp(2)", "su(3,1)/sp(1,1)",
+    "so*(6)/u(2)", "sp(4,R)/gl(1)", "sp(4,R)/gl(3)", "sl(3,C)/sl(2)", "sp(4,C)/sp(1)", "su(4)/s(gl(2)+gl(2))",
+    "sl(4)/s(u(2)+u(2))", "sl(4)/s(gl(2)+gl(1))", "su(2,1)/u(3)", "su(2,1)/T^2", "sl(3)/T^2", "su(3)/u(1;1,1,0)",
+    "sp(6,R)/sp(2,R)+sp(2,R)+sp(2,R)", "sp(6)/sp(2,R)+sp(4,R)", "so(6)/so(3,C)", "su(3,1)/s(u(2)+u(2))",
 ])  # fmt: skip
 def test_name_that_is_not_a_pair_raises_catalog_error(name: str) -> None:
     with pytest.raises(CatalogError):

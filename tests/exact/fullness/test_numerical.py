@@ -291,3 +291,8 @@ def test_random_pairs_have_no_wrong_answer_and_few_undecided_ones() -> None:
 def test_where_it_fails_is_not_answered_over_floats(question: Any) -> None:
     with pytest.raises(UndecidedError, match="rationalize"):
         question(pair_of(*constants_of(lh.pair("so(3,1)/so(2,1)"))))
+
+
+def test_the_tolerance_of_a_verdict_is_that_of_the_field() -> None:
+    verdict = lh.decide_fullness(lh.Pair(lh.abelian(2).over(lh.RR), []))
+    assert verdict.smallest == 0 and verdict.tolerance == pytest.approx(lh.RR.rtol) and verdict.gap > 1e290

@@ -358,3 +358,8 @@ def test_points_and_wrong_arguments() -> None:
         metrics.generic().holonomy()
     with pytest.raises(lh.InputError, match="invariant metric of"):
         lh.pair("so(4)/so(3)").is_naturally_reductive(metrics([1, 1]))
+
+
+def test_a_sum_of_degenerate_forms_is_a_definite_one() -> None:
+    metrics = lh.pair("affine(blocks(so(3),so(3)))").invariant_metrics()  # the Killing form is 0 on both summands
+    assert metrics.signatures() == ((0, 6), (3, 3), (6, 0))

@@ -1,5 +1,6 @@
 """Dimension and number of generic orbits of rho(h) + R, and the degree of the relative invariant."""
 
+import re
 from typing import Any
 
 import numpy as np
@@ -8,6 +9,7 @@ from hypothesis import given, settings, strategies as st
 
 import liehom as lh
 from liehom.base.errors import FieldError, UndecidedError
+from liehom.exact.orbits import cone
 from liehom.exact.orbits.cone import counted_open_orbits
 from liehom.exact.orbits.range import generic_rank, number_of_points
 from liehom.exact.scalars.polynomial_matrix import LinearForms, RankLoss, rank_losses_on_line
@@ -42,6 +44,47 @@ def test_known_orbits(name: str) -> None:
 def test_determinants_are_known_without_elimination() -> None:
     reason = "f is the determinant of 3 x 3 matrices, and it has two signs"
     assert counted_open_orbits(lh.pair("affine(tensor(gl(3),sl(3)))")) == (2, reason)
+
+
+TENSORS = {
+    "gl(2),so(3,1)": (2, "f is the Gram determinant of 2 vectors of R^(3,1)"),
+    "gl(2),so(2,1)": (3, "f is the Gram determinant of 2 vectors of R^(2,1)"),
+    "gl(2),so(5)": (1, "f is the Gram determinant of 2 vectors of R^(5,0)"),
+    "gl(2),g2": (1, "f is the Gram determinant of 2 vectors of R^(7,0)"),
+    "gl(2),so(4)": (1, "f = |S|^2 for a skew-Hermitian form S of H^2, and S = 0 has codimension at least 2"),
+    "gl(3),so(3)": (2, "f is the determinant of 3 x 3 matrices, and it has two signs"),
+}
+
+
+@pytest.mark.parametrize("name", TENSORS)
+def test_invariants_of_tensor_products_are_known(name: str) -> None:
+    assert counted_open_orbits(lh.pair(f"affine(tensor({name}))")) == TENSORS[name]
+
+
+@pytest.mark.parametrize(("name", "d", "degree", "count"), [
+    ("sl(3,R)", 6, 3, 4), ("sl(4,R)", 10, 4, 5), ("sl(3,C)", 9, 3, 4), ("sl(3,H)", 15, 3, 4), ("e6(-26)", 27, 3, 4),
+    ("sl(6,R)", 15, 3, 2), ("sl(8,R)", 28, 4, 2), ("sl(2,H)", 10, 4, 1), ("sl(3,H)", 21, 6, 1), ("sl(2,R)", 4, 4, 2),
+    ("sl(6,R)", 20, 4, 2), ("sl(2,R)", 4, 3, None), ("sl(6,R)", 20, 3, None), ("sl(2,H)", 10, 3, None),
+    ("e6(-26)", 27, 4, None), ("sl(3,R)", 8, 3, None), ("sl(5,R)", 10, 5, None),
+])  # fmt: skip
+def test_invariants_of_simple_algebras_are_known(name: str, d: int, degree: int, count: int | None) -> None:
+    known = cone._of_simple(lh.RealForm.of_name(name), d, degree)
+    assert (known and known[0]) == count
+
+
+@pytest.mark.parametrize(("conic", "count"), [
+    ("x^2+y^2-1", 2), ("x^2+y^2", 1), ("x^2+y^2+1", 1), ("1-x^2-y^2", 2), ("x^2-y^2-1", 3), ("x^2-y^2+1", 3),
+    ("x^2-y^2", 4), ("x^2-2*y", 2), ("x^2", 2), ("x^2-1", 3), ("x^2+1", 1), ("-2*y-x^2", 2), ("2*x+x^2", 3),
+])  # fmt: skip
+def test_components_of_the_complements_of_plane_conics(conic: str, count: int) -> None:
+    x, y, z = (QQ.unit(3, i) for i in range(3))
+    pairs = {"x": (x, z), "y": (y, z), "1": (z, z), "x^2": (x, x), "y^2": (y, y)}
+    form = QQ.zeros(3, 3)
+    for sign, factor, name in re.findall(r"([+-]?)(?:(\d)\*)?([xy](?:\^2)?|1)", conic):
+        one, other = pairs[name]
+        form = form + (one.T @ other + other.T @ one).scale((-1 if sign == "-" else 1) * QQ.convert(factor or 1) / 2)
+    mixed = QQ.matrix([[1, 2, 0], [0, 1, 3], [1, 0, 1]])  # other coordinates of the same plane and conic
+    assert cone._affine_components(z, form) == cone._affine_components(z @ mixed, mixed.T @ form @ mixed) == count
 
 
 @pytest.mark.parametrize("name", [name for name in CASES if lh.pair(name).dimension <= 7])

@@ -123,6 +123,14 @@ def test_the_dynkin_index_excludes_a_type() -> None:
     assert simple_ideals._types((8, 2, 17), 3, p) == ["A2"]
 
 
+def test_the_trace_form_of_rotations_is_a_known_part_of_the_killing_form() -> None:
+    p = 4194301
+    for n, size in ((5, 8), (7, 8), (9, 16)):
+        span = span_of(lh.pauli.closure(rotations(n, size)))
+        ideal = n * (n - 1) // 2, n // 2, pow(n - 2, -1, p)
+        assert ideals_modulo(span, span.basis(derived=True), p) == [ideal]
+
+
 def test_an_open_type_is_left_to_the_structure_theory(monkeypatch: pytest.MonkeyPatch) -> None:
     closure = lh.pauli.closure(rotations(7, 8))
     with_index = closure.describe()

@@ -115,3 +115,10 @@ def test_strings_agree_with_python_arithmetic(text: str) -> None:
     real, imaginary = complex_parts(text, QQ)
     expected = eval(re.sub("(?<![0-9])i", "1i", text).replace("i", "j"))
     assert cmath.isclose(complex(float(QQ.convert(real)), float(QQ.convert(imaginary))), expected, abs_tol=1e-6)
+
+
+def test_a_number_that_is_zero_has_no_inverse() -> None:
+    for text in ("(i-i)**-1", "1/(i-i)", "(i*0)**-2"):
+        with pytest.raises(ParseError):
+            complex_parts(text, QQ)
+    assert complex_parts("(i-i)**2 + i", QQ) == (QQ.zero, QQ.one) == complex_parts("(i-i)**0 - 1 + i", QQ)

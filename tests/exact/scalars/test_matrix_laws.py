@@ -9,6 +9,8 @@ import pytest
 from hypothesis import given, strategies as st
 
 from liehom.base.errors import FieldError, ShapeError, SingularError
+from liehom.exact.algebra.core.subalgebra import independent_rows as rows_of_subalgebras
+from liehom.exact.scalars.floating import RR
 from liehom.exact.scalars.lattices import balancing_rows, fixed_point, lattice_reduction, power_of_two
 from liehom.exact.scalars.modular import independent_columns, independent_rows, primitive_residues
 from liehom.exact.scalars.number_fields import NumberField
@@ -232,3 +234,9 @@ def test_balancing_without_enough_bits_is_none() -> None:
 def test_lattice_reduction_shortens_rows() -> None:
     rows = QQ.matrix([[1, 0, 0], [10**20, 1, 0], [1, 10**25, "1/1000"]])
     assert np.linalg.cond((lattice_reduction(rows, 300) @ rows).to_numpy()) < 10
+
+
+def test_independent_rows_over_floats_and_exact_numbers() -> None:
+    rows = [[0, 0, 0], [1, 2, 0], [2, 4, 0], [0, 0, 3], [1, 2, 3], [0, 1, 0]]
+    floats = RR.matrix([[float(x) for x in row] for row in rows])
+    assert rows_of_subalgebras(QQ.matrix(rows)) == rows_of_subalgebras(floats) == [1, 3, 5]

@@ -285,3 +285,13 @@ def test_arguments_that_are_refused() -> None:
         lh.bodies.HeavyTop([1, 2, 3], [0, 1])
     with pytest.raises(lh.errors.InputError, match="weight"):
         lh.bodies.HeavyTop([1, 2, 3], [0, 0, 1], np.inf)
+
+
+def test_an_ensemble_of_poses_starts_at_its_momenta_and_positions() -> None:
+    body = lh.bodies.SE3Body([1, 2, 3])
+    momentum, position = np.arange(30.0).reshape(5, 6), np.arange(15.0).reshape(5, 3)
+    state = body.state(body.start(momentum=momentum, position=position))
+    assert np.allclose(state.position, position) and np.allclose(state.momentum, momentum)
+    for wrong in ({"momentum": np.ones(5)}, {"momentum": np.ones(6), "position": np.ones(2)}):
+        with pytest.raises(lh.errors.ShapeError, match=r"expected \(\.\.\., 6\) and \(\.\.\., 3\)"):
+            body.start(**wrong)  # type: ignore[arg-type]

@@ -286,3 +286,17 @@ def test_no_run_comes_through() -> None:
 def test_no_solution_until_the_end() -> None:
     with pytest.raises(ConvergenceError, match="cannot be continued"):
         observed_order(blows_up(), [1.0], lh.Euler(), [0.5, 0.25], t_span=(0, 2))
+
+
+BODY = """Heun() with exp (Rodrigues), clock corrected, t = 0 to 1
+    dt  orbit error  order  trajectory error  order
+  0.25     1.54e-05                 2.41e-04
+ 0.125     1.93e-06   3.00          5.96e-05   2.02
+0.0625     2.42e-07   3.00          1.48e-05   2.01
+reference accurate to 1e-19"""
+
+
+def test_the_text_of_a_table() -> None:
+    field = lh.hamiltonian_field(lh.so(3), "m0**2/4 + m1**2/6 + m2**2/8", sign=-1)
+    table = lh.observed_order(field, [0.48, 0.6, 0.64], "heun", [0.25, 0.125, 0.0625])
+    assert str(table) == repr(table) == BODY

@@ -18,6 +18,7 @@ from liehom.flow.convergence.costs import (
     Compared,
     Outcome,
     Setting,
+    StepMethod,
     WorkPrecisionRow,
     WorkPrecisionTable,
     timed_run,
@@ -292,3 +293,33 @@ def test_studies_without_a_meaning_are_refused(y0: Any, options: Any, match: str
     field = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m: -m / [1.0, 2.0, 3.0])
     with pytest.raises((InputError, ShapeError), match=match):
         lh.work_precision(field, ["rk4"], (0, 1), y0, dts=[0.5], **options)
+
+
+def test_a_lost_order_is_a_message_of_the_row() -> None:
+    field = lh.GeneratorField(lh.defining(lh.su(3)), [f"{k + 1}*m{k % 6}" for k in range(8)])
+    start = np.array([0.6, 0.0, 0.0, 0.48, 0.64, 0.0])
+    for step, said in ((lh.Heun(), ""), (lh.Corrected(lh.Euler(), 3), "order 3 was not kept")):
+        method = StepMethod("", step, lh.Propagator(field, step, engine="numpy"), (0.0, 1.0), start, 100)
+        outcome = method.run(Setting(dt=0.25))
+        assert (method.label, outcome.steps, bool(outcome.message)) == (repr(step), 4, bool(said))
+        assert said in outcome.message
+
+
+ROWS = """
+method      setting       error  orbit error  calls  steps
+heun        dt 0.25     3.5e-02      1.4e-02     10      4
+heun        tol 0.0001  5.7e-04      3.0e-04    318     34
+scipy RK45  tol 0.0001  6.9e-04      5.5e-04     38      5
+"""
+
+
+def test_the_text_of_a_table_without_its_times() -> None:
+    field = lh.GeneratorField(lh.defining(lh.so(3)), ["1 + m0/2", "2*m1 - m2**2", "sin(t) + m2"])
+    options: Any = {"dts": [0.25], "tolerances": [1e-4], "repeats": 1}
+    table = lh.work_precision(field, ["heun", "scipy RK45"], (0, 1), [0.48, 0.6, 0.64], **options)
+    first, *rows, reference, machine = str(table).splitlines()
+    assert first == "errors at t = 1, from t = 0"
+    assert [row[:58].rstrip() for row in rows] == [row.rstrip() for row in ROWS.strip().splitlines()]
+    assert rows[0][58:].split() == ["CPU", "ms", "wall", "ms"] and all(len(row.split()) >= 8 for row in rows)
+    assert reference == "reference: Taylor series in extended precision, accurate to 1e-19"
+    assert machine.startswith("times on ") and machine.endswith(", engine numpy, without compilation")

@@ -8,6 +8,7 @@ import pytest
 
 import liehom as lh
 from liehom.base.errors import InputError
+from liehom.flow.engines.jax_loops import _digest
 from liehom.flow.series.jet import Jet
 
 jax = pytest.importorskip("jax")
@@ -133,3 +134,10 @@ def test_series_of_a_psi_that_is_written_with_functions_of_jax_are_those_of_nump
     with jax.enable_x64(True):
         found = made.psi(Jet(jnp.asarray(terms))).coefficients
     np.testing.assert_allclose(np.asarray(found), plain.psi(Jet(terms)).coefficients, rtol=0, atol=1e-12)
+
+
+def test_digests_of_traced_functions_are_those_of_their_operations() -> None:
+    first, again, other = (
+        _digest(jax.make_jaxpr(f)(1.0).jaxpr) for f in (lambda x: 2.0 * x, lambda y: 2.0 * y, lambda x: 3.0 * x)
+    )
+    assert first is not None and len(first) == 64 and first == again != other

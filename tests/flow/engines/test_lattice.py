@@ -53,6 +53,7 @@ def test_every_boundary_and_dimension_agrees_with_numpy(shape: Any, periodic: An
     made = lattice.integrate((0, 1), m, step=lh.RKMK("rk4"), dt=0.05, engine="llvm")
     np.testing.assert_allclose(made.y, plain.y, rtol=0, atol=2e-14)
     np.testing.assert_allclose(made.t, plain.t, rtol=0, atol=1e-15)
+    assert made.report.engine == "llvm, numpy"  # all steps but the last one
 
 
 def test_adaptive_steps_and_events_of_time_agree_with_numpy() -> None:

@@ -76,3 +76,9 @@ def test_beyond_a_turn_errors_are_of_size_h_and_do_not_vanish_with_h() -> None:
     assert small[1] > 0.9 * small[0] > 4e-3
     plain = errors_towards_a_moving_equilibrium(1000, [1 / 1000, 1 / 4000], turn=False)
     assert plain[1] < 1e-6
+
+
+def test_limits_of_stability_are_found_to_a_ten_thousandth() -> None:
+    zeros = {lh.Euler(): 2.0, lh.RKMK("rk4"): 2.785293563405282, lh.LieTaylor(3): 2.5127453266183286}
+    for step, zero in zeros.items():
+        assert 0 <= zero - stability_limit(step) < 1.01e-4

@@ -29,7 +29,7 @@ from liehom.flow.methods.runge_kutta import (
     level_of,
     tree_at,
 )
-from liehom.flow.methods.tableaux import collocation, gauss, tableau, tableau_names
+from liehom.flow.methods.tableaux import collocation, gauss, radau, tableau, tableau_names
 
 NAMES = tableau_names()
 EXACT = [name for name in NAMES if tableau(name).exact]
@@ -486,3 +486,17 @@ def test_the_order_is_found_where_none_is_claimed() -> None:
         assert Tableau(method.a, method.b).order == method.order
     with pytest.raises(InputError, match="order 1"):
         Tableau([[0]], [2])  # not consistent: no order holds
+
+
+@pytest.mark.parametrize("stages", range(2, 8))
+def test_nodes_of_radau_add_up_as_the_zeros_of_their_polynomial(stages: int) -> None:
+    made = radau(stages)
+    nodes = np.array([float(x) for x in made.c])
+    assert nodes[-1] == 1 and made.order == 2 * stages - 1
+    assert nodes.sum() == pytest.approx(stages**2 / (2 * stages - 1), abs=1e-14)
+    assert (np.diff(nodes) > 0).all() and np.array([float(x) for x in made.b]) @ nodes == pytest.approx(
+        1 / 2, abs=1e-14
+    )
+    for wrong in (1, 8, True, 2.0):
+        with pytest.raises(InputError, match=f"a Radau IIA method has 2 to 7 stages here, got {wrong!r}"):
+            radau(wrong)  # type: ignore[arg-type]

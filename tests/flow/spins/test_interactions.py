@@ -7,7 +7,7 @@ import pytest
 from scipy.stats import special_ortho_group
 
 import liehom as lh
-from liehom.flow.spins import LandauLifshitz
+from liehom.flow.spins import LandauLifshitz, SpinLattice
 from tests.studies.support import on_sphere
 
 
@@ -100,3 +100,9 @@ def test_arguments_that_are_refused() -> None:
             LandauLifshitz((3,), **options)
     with pytest.raises(lh.errors.InputError, match="at most 3"):
         LandauLifshitz((3, 3, 3, 3), dmi=1.0)
+
+
+def test_the_shape_of_a_lattice_is_a_tuple_of_int() -> None:
+    lattice = SpinLattice((np.int64(3), np.int64(4)), (np.bool_(True), np.bool_(False)))  # type: ignore[arg-type]
+    assert (lattice.shape, lattice.periodic) == ((3, 4), (True, False))
+    assert {type(x) for x in lattice.shape} == {int} and {type(x) for x in lattice.periodic} == {bool}

@@ -7,6 +7,8 @@ import pytest
 import liehom as lh
 from liehom.exact.algebra.roots.real_form import canonical_ideals, join_real_forms
 from liehom.studies.atlas.irreducible import (
+    _of_catalogue as named_pair_of_row,
+    _rows,
     complexified,
     isotropy_irreducible_pair,
     isotropy_irreducible_pairs,
@@ -26,6 +28,23 @@ def test_compact_pairs_are_those_of_wolf():
     assert [name for name, recipe in RECIPES.items() if recipe.known["compact"]] == list(WOLF)
     assert all(RECIPES[name].pair().dimension == d for name, d in WOLF.items())
     assert len(RECIPES) == len(list(isotropy_irreducible_pairs(34))) == 34
+
+
+def test_the_dimension_of_each_row_is_that_of_the_names():
+    """Other real forms and complexifications follow the compact pairs; the rows are read again."""
+    rows = {row.name: row for row in _rows()}
+    assert rows.keys() == RECIPES.keys()
+    for name, row in rows.items():
+        top, bottom = name.split("/")
+        inner = re.sub(r"^(ad|S2|S3|tensor|herm|principal)\((.*)\)$", r"\2", bottom)
+        ideals = [
+            lh.RealForm.of_name(x) for t in re.findall(r"[a-z]+\d?(?:\([^()]*\))?", inner) for x in canonical_ideals(t)
+        ]
+        above = lh.RealForm.of_name(top.replace("spin", "so"))
+        assert row.dimension == above.dimension - sum(form.dimension for form in ideals)
+        assert row.compact == above.is_compact
+        if row.build is named_pair_of_row:
+            assert row.argument == name
 
 
 @pytest.mark.parametrize("name", RECIPES)

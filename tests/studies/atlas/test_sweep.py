@@ -71,6 +71,7 @@ def test_rejected_pairs_have_a_reason_and_are_not_stored(tmp_path: Path) -> None
     atlas = lh.atlas.sweep(["so(4)/so(3)", "so(4)/so(5)"], store=tmp_path / "atlas")
     assert [entry.full for entry in atlas] == [True, None] and "CatalogError" in atlas.failures[0].reason
     assert "? " in str(atlas) and [line["facts"]["name"] for line in lines(tmp_path / "atlas")] == ["so(4)/so(3)"]
+    assert [entry.verified for entry in atlas] == [True, False]
     with pytest.raises(InputError, match="there is no certificate"):
         atlas[1].verify()
 

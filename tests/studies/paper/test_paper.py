@@ -22,9 +22,12 @@ from liehom.studies.paper.reproduction import Check, Reproduction, stored
 from liehom.studies.paper.table import CROSSOVER, FIGURE_3, FIGURE_4, FIGURE_5, FIGURE_6, UPDATES, Table
 from liehom.studies.paper.trajectories import separatrix_sample, trajectory
 from liehom.studies.rigid_body import RigidBody
+from tests.plotting.looks import described
+from tests.plotting.test_looks import differences
 from tests.studies.paper.small import small
 
 ROOT = Path(__file__).resolve().parent.parent.parent.parent
+LOOKS = Path(__file__).with_name("looks.txt")
 quick = cache(partial(reproduce, quick=True))
 """Reproduction of a figure on few bodies, computed once for all tests."""
 
@@ -284,6 +287,22 @@ def test_panels_of_figures_3_to_5_show_both_the_errors_here_and_those_of_the_pap
             assert axes.get_title(loc="right") == key[0]
 
 
+DRAWN = ("fig4", "fig7", "separatrix")
+
+
+def drawn(name: str) -> list[str]:
+    """The figure as text, without errors that are round-off."""
+    return [re.sub(r"-?\d[\d.]*e-1[2-9]", "0", line) for line in described(quick(name).plot())]
+
+
+@pytest.mark.parametrize("name", DRAWN)
+def test_a_figure_looks_as_it_is_recorded(name: str) -> None:
+    """`python -m tests.studies.paper.test_paper > tests/studies/paper/looks.txt` records them again."""
+    recorded = dict(block.split("\n", 1) for block in LOOKS.read_text(encoding="utf-8").split("# ")[1:])
+    found = differences(recorded[name].splitlines(), drawn(name))
+    assert not found, "\n".join(found)
+
+
 def test_tables_in_latex_compile_as_text() -> None:
     text = Table("a & b", ("x_1", "update"), [("|m| < 1", "sy4_io"), (2.5e-7, "10 %")]).latex("Claims: xi_o^sy4 50%")
     assert r"\caption{Claims: $\xi_{o}^{\mathrm{sy4}}$ 50\%}" in text
@@ -409,3 +428,8 @@ def stored_table(name: str, key: str) -> list[str]:
 def cells(row: list[str]) -> list[str | float]:
     numbers = [re.fullmatch(r"-?[0-9.]+(e[+-][0-9]+)?", x) for x in row]
     return [float(x) if number else (float("nan") if x == "" else x) for x, number in zip(row, numbers, strict=True)]
+
+
+if __name__ == "__main__":
+    for name in DRAWN:
+        print(f"# {name}", *drawn(name), sep="\n")

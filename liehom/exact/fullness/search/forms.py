@@ -326,18 +326,14 @@ def complex_symplectic_form(skew: ExactMatrix, structure: ExactMatrix) -> ExactM
         values = [omega(u, r) for r in rest]
         position = next((i for i, v in enumerate(values) if any(x != 0 for x in v)), None)
         if position is None:
-            if (u @ field.identity(d)).is_zero() or len(kept) * 2 == d:
-                break
             return None
         w, (p, q) = rest.pop(position), values[position]
         norm = p * p + a * q * q
         w = times((p / norm, -q / norm), w)
         reduced = [r - times(omega(r, w), u) + times(omega(r, u), w) for r in rest]
-        span = field.stack_rows(reduced, d).row_space() if reduced else field.zeros(0, d)
+        span = field.stack_rows(reduced, d).row_space()
         rest = [span.select(rows=[i]) for i in range(span.nrows)]
         kept += [u, w]
-    if len(kept) * 2 != d:
-        return None
     basis = field.stack_rows([*kept, *(u @ turned for u in kept)], d)  # rows b_i, J b_i
     weights = field.stack_rows([field.unit(d, i).scale(field.one if i < len(kept) else a) for i in range(d)], d)
     inverse = basis.inverse()

@@ -213,3 +213,7 @@ def test_dimension_thirty_in_scrambled_bases_is_quick() -> None:
         der = derivations(g.change_of_basis(change))
         assert der.dimension == {"filiform(30)": 59, "sl(5)": 24, "aff(5)": 30}[str(g.name)]
     assert time.process_time() - start < 20  # about 2 s on one idle core
+
+
+def test_the_zero_algebra_has_coordinates_of_length_0() -> None:
+    assert lh.abelian(0).derivations().coordinates([]).shape == (1, 0)

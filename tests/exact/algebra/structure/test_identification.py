@@ -9,7 +9,7 @@ import liehom as lh
 from liehom.base.errors import UndecidedError
 from liehom.exact.algebra.core.lie_algebra import LieAlgebra
 from liehom.exact.algebra.roots.real_form import RealForm, complex_form, real_forms
-from liehom.exact.algebra.structure.identification import simple_parts
+from liehom.exact.algebra.structure.identification import simple_parts, small_name
 from liehom.testing import random_unimodular
 
 TYPES = [
@@ -91,3 +91,8 @@ def test_number_of_simple_ideals_over_the_complex_numbers() -> None:
     (part,) = simple_parts(lh.so(3, 1))
     assert part.centroid.degree == 2 and part.type == "A1"
     assert [place.kind for place in part.places] == ["complex"]
+
+
+def test_small_algebras_have_a_name_up_to_dimension_6() -> None:
+    algebras = (lh.low_dimensional(6, 3), lh.low_dimensional(5, 1), lh.so(4), lh.heisenberg(3), lh.abelian(7))
+    assert [small_name(algebra) for algebra in algebras] == ["A6,3", "A5,1", "A3,9+A3,9", "", ""]

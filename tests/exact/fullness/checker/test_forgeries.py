@@ -15,7 +15,7 @@ from typing import Any
 import pytest
 
 import liehom as lh
-from liehom.base.errors import InputError, InternalError, LiehomError
+from liehom.base.errors import CertificateError, InputError, InternalError, LiehomError
 from liehom.exact.fullness import verify_classification
 from liehom.exact.fullness.certificate import Certificate
 from liehom.exact.fullness.checker import verify, verify_modular, verify_pair
@@ -476,3 +476,11 @@ def test_fields_of_both_sides_are_checked(offer: Callable[[Patch], Any]) -> None
     with pytest.MonkeyPatch.context() as patch, pytest.raises(lh.CertificateError) as caught:
         offer(patch)
     assert caught.value.check == "field"
+
+
+def test_a_lattice_is_checked_within_a_limit_of_time(monkeypatch: Patch) -> None:
+    asked: list[bool] = []
+    monkeypatch.setattr(verify, "in_time", lambda: asked.append(True))
+    with pytest.raises(CertificateError, match="rank"):
+        RANGE["lattice: a higher rank"](monkeypatch)
+    assert asked

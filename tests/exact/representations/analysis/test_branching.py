@@ -13,6 +13,7 @@ from math import comb
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
 
@@ -297,3 +298,14 @@ def test_names_of_modules_differ_and_those_of_exchanged_ones_only_in_bars_and_le
             assert ("bar" in name) is (smaller is (sorted((mu, dual)) == [(0, 2), (2, 0)] and kind == "A2"))
         else:
             assert "bar" not in name and (name[-1] in "vsc") is (len(images) > 1)
+
+
+@pytest.mark.parametrize("kind", ["A3", "A4", "B3", "B4", "C3", "C4", "D4", "D5", "D6", "E6", "E7", "E8", "F4", "G2"])
+def test_classes_are_those_modulo_the_root_lattice(kind: str) -> None:
+    """A root does not change the class, and the fundamental weights have all classes but 0."""
+    cartan = np.array(lh.root_system(kind).cartan, dtype=int)
+    units = np.eye(len(cartan), dtype=int)
+    for root, w in product(cartan, units):
+        assert R.congruency_class(kind, (w + 3).tolist()) == R.congruency_class(kind, (w + 3 + root).tolist())
+    classes = {R.congruency_class(kind, w.tolist()) for w in (0 * units[0], *units)}
+    assert len(classes) == round(abs(np.linalg.det(cartan)))

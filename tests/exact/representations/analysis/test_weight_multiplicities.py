@@ -7,6 +7,7 @@ import pytest
 
 import liehom as lh
 from liehom.base.errors import InputError, NotCompletelyReducibleError, UndecidedError
+from liehom.exact.representations.analysis.weight_multiplicities import Charge
 from liehom.exact.scalars.joint_spectrum import joint_multiplicities, preserved_blocks
 from liehom.exact.scalars.rational import QQ
 from liehom.testing import random_unimodular
@@ -185,3 +186,12 @@ def test_charges_are_printed_as_complex_numbers() -> None:
     half = QQ.convert("1/2")
     shown = [lh.representations.Charge(a, b) for a in (QQ.zero, half) for b in (QQ.zero, QQ.one, -QQ.one, -half)]
     assert str(shown) == "[0, i, -i, -(1/2)*i, 1/2, 1/2 + i, 1/2 - i, 1/2 - (1/2)*i]"
+
+
+@pytest.mark.parametrize(("real", "imaginary", "shown"), [
+    ("0", "0", "0"), ("-1/2", "0", "-1/2"), ("0", "1", "i"), ("0", "-1", "-i"), ("0", "1/2", "(1/2)*i"),
+    ("0", "-1/2", "-(1/2)*i"), ("0", "2", "2*i"), ("3", "2", "3 + 2*i"), ("3", "-1", "3 - i"),
+    ("1/2", "-1/3", "1/2 - (1/3)*i"),
+])  # fmt: skip
+def test_charges_as_text(real: str, imaginary: str, shown: str) -> None:
+    assert repr(Charge(QQ.convert(real), QQ.convert(imaginary))) == shown

@@ -100,3 +100,9 @@ def test_what_is_no_signature_is_refused() -> None:
 def test_matrices_that_fill_the_memory_are_refused(p: int, q: int) -> None:
     with pytest.raises(InputError, match=r"GB|too many|p is 1000000000000, the limit"):
         lh.spin_representation(p, q)
+
+
+@pytest.mark.parametrize(("p", "q"), [(3, 0), (4, 0), (3, 1), (2, 2), (5, 0), (6, 2)])
+def test_a_spin_representation_is_named_by_its_chirality(p: int, q: int) -> None:
+    names = [lh.spin_representation(p, q, chirality=c).name for c in ((1, -1) if (p - q) % 4 == 0 else (1,))]
+    assert names == (["half-spin +", "half-spin -"] if (p - q) % 4 == 0 else ["spin"])
