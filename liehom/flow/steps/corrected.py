@@ -16,7 +16,7 @@ from liehom.flow.action.field import GeneratorField, check_point
 from liehom.flow.action.space import Action, IsotropyFrame
 from liehom.flow.series.arrays import as_values, is_exact, is_jax, is_lazy, is_traced, namespace, zeros
 from liehom.flow.steps.expansion import ROUND_OFF_UNITS, Clock, Flow, at_rest, flow_series, leading_order, vanishing
-from liehom.flow.steps.range_solver import RangeSolver, TightFrameSolver
+from liehom.flow.steps.range_solver import SMALLEST_SQUARE, RangeSolver, TightFrameSolver
 from liehom.flow.steps.step import (
     Derived,
     Diagnostics,
@@ -63,7 +63,8 @@ def isotropy_fraction(action: Action, flow: Flow, leading: int, order: int) -> V
     rate: Any = xp.zeros_like(first)
     for k in range(order):
         rate = xp.maximum(rate, generator_norm(action, flow.psi(k)) ** (1 / (k + 1)))
-    product = xp.where(rate > 0, rate * xp.minimum(scale, 1 / xp.where(rate > 0, rate, 1.0)), 1.0)
+    moves = first * first > SMALLEST_SQUARE  # else rate and scale, which need squares, are not known
+    product = xp.where(moves, rate * xp.minimum(scale, 1 / xp.where(moves, rate, 1.0)), 0.0)
     x = xp.clip((product - NO_ISOTROPY_UP_TO) / (ONLY_ISOTROPY_FROM - NO_ISOTROPY_UP_TO), 0.0, 1.0)
     return x * x * (3 - 2 * x)
 
