@@ -102,6 +102,10 @@ def lateness(number: int, seed: int) -> tuple[str, float, str]:
     seconds = rng.choice([0.02, 0.1, 0.3, 1.0, 3.0]) * rng.uniform(0.5, 1.5)
     if number == COUNT:  # 10,626 equations for 1,771 coefficients
         what, seconds, compute = "cubic Casimirs of sp(6,R)", 1.0, lambda: scrambled("sp(6,R)", rng).casimirs(3)
+    if number == COUNT + 1:  # minors of the coadjoint matrix in a dense basis
+        g = lh.catalog.algebra("bargmann(3)")
+        g = g.change_of_basis(random_unimodular(g.dimension, random.Random(1), 3 * g.dimension))
+        what, seconds, compute = "cubic Casimirs of bargmann(3)", 1.0, lambda: g.casimirs(3)
     if number % 2:
         small()
     budget.time = SimpleNamespace(monotonic=time.process_time)  # type: ignore[assignment]
@@ -121,6 +125,10 @@ def test_a_random_computation_ends_with_its_deadline(number: int) -> None:
 
 def test_a_large_linear_system_ends_with_its_deadline() -> None:
     ends_in_time(COUNT)
+
+
+def test_minors_end_with_their_deadline() -> None:
+    ends_in_time(COUNT + 1)
 
 
 def ends_in_time(number: int) -> None:

@@ -53,6 +53,7 @@ def expanded_minors(
     for size, column in enumerate(columns, start=1):
         grown: dict[tuple[int, ...], flint.fmpq_mpoly] = {}
         for chosen in combinations(rows, size):
+            in_time()
             total = 0 * one
             for place, row in enumerate(chosen):
                 rest = minors.get(chosen[:place] + chosen[place + 1 :])
@@ -466,6 +467,7 @@ class _Block:
 
 def primitive(row: Vector, zero: Poly) -> Vector:
     """A vector of polynomials divided by its greatest common divisor, with coprime integer coefficients."""
+    in_time()
     common = common_divisor(row, zero)
     return integral([divmod(v, common)[0] for v in row])
 

@@ -62,7 +62,8 @@ class RKMK(OneExponential):
 
     If the tableau has an embedded method, ``at(...)`` returns an `EmbeddedStep`. Its ``estimate(h)`` is the difference
     of the two methods as a vector in V, of the order ``estimate_order`` in h. Both methods share their stages; stages
-    with zero weight are computed only for the estimate.
+    with zero weight are computed only for the estimate. Both share the terms of dexp^-1 too, so the estimate does not
+    see those that are missing. Therefore a pair uses one more, ad_u^(p-1), which is zero for even p > 2.
 
     Coefficients are rounded once to the type of m. Over exact scalars they are exact, and so are expansions in h.
 
@@ -92,8 +93,9 @@ class RKMK(OneExponential):
 
     @property
     def terms(self) -> int:
-        """Number of terms of the series of dexp^-1 in use: the order minus 1, at least 1."""
-        return max(self.order - 1, 1)
+        """Number of terms of the series of dexp^-1 in use, at least 1: the order minus 1, or the order for a pair."""
+        pair = self.order > 2 and self.tableau.embedded_b is not None
+        return max(self.order - 1 + pair, 1)
 
     def coefficients(self, like: Values) -> Coefficients:
         """The nonzero coefficients in the numbers of the array `like`."""

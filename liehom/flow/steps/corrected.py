@@ -16,7 +16,7 @@ from liehom.flow.action.field import GeneratorField, check_point
 from liehom.flow.action.space import Action, IsotropyFrame
 from liehom.flow.series.arrays import as_values, is_exact, is_jax, is_lazy, is_traced, namespace, norm, zeros
 from liehom.flow.steps.expansion import ROUND_OFF_UNITS, Clock, Flow, at_rest, flow_series, leading_order, vanishing
-from liehom.flow.steps.range_solver import RangeSolver, TightFrameSolver
+from liehom.flow.steps.range_solver import SMALLEST_SQUARE, RangeSolver, TightFrameSolver
 from liehom.flow.steps.step import (
     Derived,
     Diagnostics,
@@ -63,7 +63,8 @@ def isotropy_fraction(action: Action, flow: Flow, leading: int, order: int) -> V
     rate: Any = xp.zeros_like(first)
     for k in range(order):
         rate = xp.maximum(rate, generator_norm(action, flow.psi(k)) ** (1 / (k + 1)))
-    product = xp.where(rate > 0, rate * xp.minimum(scale, 1 / xp.where(rate > 0, rate, 1.0)), 1.0)
+    moves = first * first > SMALLEST_SQUARE  # else rate and scale, which need squares, are not known
+    product = xp.where(moves, rate * xp.minimum(scale, 1 / xp.where(moves, rate, 1.0)), 0.0)
     x = xp.clip((product - NO_ISOTROPY_UP_TO) / (ONLY_ISOTROPY_FROM - NO_ISOTROPY_UP_TO), 0.0, 1.0)
     return x * x * (3 - 2 * x)
 
@@ -94,7 +95,7 @@ def least_generator(frame: IsotropyFrame, v: Values) -> Values:
 # (`range_solver`), or by terms of the flow itself where isotropy does not enter (`completion`).
 
 SOLVED_RTOL = 1e-6
-VELOCITIES, MOST_CHECKED = 2, 64  # velocities and points for which a range condition is looked at before a run
+VELOCITIES, AT_ONCE = 2, 4096  # for which a range condition is looked at before a run, and points in one array
 LITTLE_ISOTROPY = 1 / 8  # a correction below this fraction of the way of a point counts as small
 
 
@@ -552,7 +553,7 @@ class Corrected(Derived):
 
 def check_adaptive(step: Step, action: Action, m: Values, orbit_dimension: int | IntegerArray) -> None:
     """Refuse sizes by the tolerance where the range condition fails for all velocities, so that isotropy reaches no
-    order, at the first `MOST_CHECKED` of the points m (..., N).
+    order, at one of the points m (..., N).
     """
     while isinstance(step, Derived) and not isinstance(step, Corrected):
         step = step.step
@@ -560,12 +561,17 @@ def check_adaptive(step: Step, action: Action, m: Values, orbit_dimension: int |
         return
     if is_traced(m) or not np.size(m):  # JAX traces it: it has no values
         return
-    points = np.asarray(m, dtype=float).reshape(-1, np.shape(m)[-1])[:MOST_CHECKED]
-    dimension = np.broadcast_to(orbit_dimension, np.shape(m)[:-1]).reshape(-1)[:MOST_CHECKED]
-    frame, rank = action.isotropy_frame(points, dimension), 0 * dimension
-    for j in range(VELOCITIES):
-        some = np.cos((1.0 + j) * np.arange(1, frame.tangent.shape[-1] + 1))
-        rank = np.maximum(rank, RangeSolver(action, frame, frame.tangent @ some, 1, 1.0).rank)
+    points = np.asarray(m, dtype=float).reshape(-1, np.shape(m)[-1])
+    dimension = np.broadcast_to(orbit_dimension, np.shape(m)[:-1]).reshape(-1)
+    rank = 0 * dimension
+    for k in range(0, len(points), AT_ONCE):
+        here = slice(k, k + AT_ONCE)
+        frame = action.isotropy_frame(points[here], dimension[here])
+        for j in range(VELOCITIES):
+            some = np.cos((1.0 + j) * np.arange(1, frame.tangent.shape[-1] + 1))
+            rank[here] = np.maximum(rank[here], RangeSolver(action, frame, frame.tangent @ some, 1, 1.0).rank)
+            if bool((rank[here] >= dimension[here]).all()):
+                break
     if bool((rank >= dimension).all()):
         return
     b = int(np.argmax(rank < dimension))

@@ -37,6 +37,7 @@ STEPS = (-2.0, -1.0, 1.0, 2.0)
 NEAR_CONE = 1 / 8
 """The cone counts as near if the determinant falls below this fraction of its value at the point. A simple zero between
 one and two steps away makes the determinant negative after two steps, and a double zero leaves at most 1/9."""
+SMALLEST_SQUARE = float(np.finfo(np.float64).tiny)  # a velocity whose square is below this counts as 0
 REGULAR = 1e-12
 """A Gram determinant below this fraction of the product of its diagonal is that of a matrix without full rank."""
 
@@ -269,7 +270,8 @@ class TightFrameSolver:
         moving: Values | None = None,
     ) -> None:
         square = inner(velocity, velocity)
-        moves = square > 0 if moving is None else moving
+        moves = square > SMALLEST_SQUARE
+        moves = moves if moving is None else moves & moving
         self._over = np.where(moves, 1.0 / (square if type(square) is Traced else np.where(moves, square, 1.0)), 0.0)
         self._action, self._m, self._dimension, self._velocity = action, m, orbit_dimension, velocity
         self._leading, self._factor = leading, factor

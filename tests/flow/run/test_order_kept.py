@@ -347,8 +347,9 @@ def test_sizes_by_a_tolerance_are_refused_where_isotropy_reaches_no_order(name: 
 
 def test_the_trajectory_whose_orbit_is_refused_is_named() -> None:
     field = lh.GeneratorField(two_spheres(), lambda m: m @ np.ones((8, 6)) + 0.3)
-    with pytest.raises(lh.InputError, match=r"of trajectory 60: .* whatever the velocity"):
-        lh.integrate(field, (0, 1), points_on_two_spheres(60), step=STEP)
+    for count in (60, 5000):
+        with pytest.raises(lh.InputError, match=rf"of trajectory {count}: .* whatever the velocity"):
+            lh.integrate(field, (0, 1), points_on_two_spheres(count), step=STEP)
 
 
 def test_points_with_a_cone_are_not_refused() -> None:

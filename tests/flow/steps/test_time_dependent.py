@@ -168,3 +168,16 @@ def test_a_time_dependent_equilibrium_stays() -> None:
     assert (raised.leading == 0).all() and (raised.reached == 4).all()
     z, tau = one_step(field, lh.Corrected(lh.Euler(), 4), m, 0.3, 0.3)
     assert np.abs(z - m).max() < 1e-15 and np.array_equal(tau, np.full(5, 0.3))
+
+
+@pytest.mark.parametrize("engine", ["numpy", "llvm"])
+@pytest.mark.parametrize("rho", [spin(), lh.adjoint(lh.sl(2))], ids=["tight frame", "frame"])
+def test_a_field_whose_squares_underflow(rho: lh.Representation, engine: str) -> None:
+    """The tail of a pulse, where psi is between 1e-323 and 1e-140: isotropy makes no part of a correction there."""
+    first = np.array([1e-323, 1e-310, 1e-250, 1e-200, 1e-170, 1e-162, 1e-158, 1e-155, 1e-140])
+    args = {"c": lh.PerTrajectory(np.sqrt(-np.log(first) / 40))}
+    field = lh.GeneratorField(rho, lambda m, t, a: np.exp(-40 * (t - a["c"]) ** 2)[..., None] * np.array([3, 2, 1.0]))
+    m, options = np.broadcast_to([0.6, 0.9, -0.3], (len(first), 3)), {"args": args, "rtol": 1e-9, "atol": 1e-12}
+    raised = lh.integrate(field, (0, 5), m, step=lh.Corrected(lh.Euler(), 4), engine=engine, **options)
+    assert (raised.statuses == 0).all()
+    assert np.abs(raised.y_end - lh.integrate(field, (0, 5), m, **options).y_end).max() < 1e-6
