@@ -103,7 +103,7 @@ def _compiled(llvm: ModuleType, text: str) -> bytes:
 
 def _calls_out(llvm: ModuleType, code: bytes) -> bool:
     """Whether an ELF object has symbols without a section: they are elsewhere, out of reach of the small code model."""
-    tables = [part.data() for part in llvm.ObjectFileRef.from_data(code).sections() if part.name() == ".symtab"]
+    tables = [part.data() for part in llvm.ObjectFileRef.from_data(code).sections() if part.name() == b".symtab"]
     return any(name and not section for table in tables for name, section in struct.iter_unpack(ELF_SYMBOL, table))
 
 

@@ -84,3 +84,14 @@ def test_code_that_calls_functions_finds_them(name: str, folder: Path) -> None:
     given, found = np.array([16, 7]), np.zeros(2, dtype=int)
     run(given.ctypes.data, found.ctypes.data)
     assert found.view(float)[0] == math.sin(2.5) if name == "sin" else np.array_equal(found, given)
+
+
+@pytest.mark.skipif(not machine.NEAR, reason="code and constants are allocated apart here")
+@pytest.mark.parametrize("name", [None, "sin", "a_function_of_no_library"])
+def test_calls_that_leave_the_code_are_seen(name):
+    llvm, *_ = machine._host()
+    called = "fadd double %x, 1.0" if name is None else f"call double @{name}(double %x)"
+    text = f"define double @f(double %x) {{ %y = {called}\n ret double %y }}"
+    text = text if name is None else f"declare double @{name}(double)\n{text}"
+    code = machine._emitted(llvm, machine._target_machine(llvm, near=True), text)
+    assert machine._calls_out(llvm, code) == (name is not None)
