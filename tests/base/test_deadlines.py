@@ -106,6 +106,9 @@ def lateness(number: int, seed: int) -> tuple[str, float, str]:
         g = lh.catalog.algebra("bargmann(3)")
         g = g.change_of_basis(random_unimodular(g.dimension, random.Random(1), 3 * g.dimension))
         what, seconds, compute = "cubic Casimirs of bargmann(3)", 1.0, lambda: g.casimirs(3)
+    if number == COUNT + 2:
+        what, compute = "branching of C8", lambda: lh.branching_rule("C8", "sp(4)+sp(4)")([2, 1, 0, 0, 0, 0, 0, 1])
+        seconds = 0.5
     if number % 2:
         small()
     budget.time = SimpleNamespace(monotonic=time.process_time)  # type: ignore[assignment]
@@ -127,8 +130,9 @@ def test_a_large_linear_system_ends_with_its_deadline() -> None:
     ends_in_time(COUNT)
 
 
-def test_minors_end_with_their_deadline() -> None:
-    ends_in_time(COUNT + 1)
+@pytest.mark.parametrize("number", [COUNT + 1, COUNT + 2])
+def test_minors_and_characters_end_with_their_deadline(number: int) -> None:
+    ends_in_time(number)
 
 
 def ends_in_time(number: int) -> None:

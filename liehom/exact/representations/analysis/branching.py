@@ -19,6 +19,7 @@ from typing import final
 
 import numpy as np
 
+from liehom.base.budget import in_time
 from liehom.base.errors import InputError, displayed
 from liehom.base.objects import DisplayedTable
 from liehom.exact.algebra.core.subalgebra import Subalgebra
@@ -336,6 +337,7 @@ class BranchingRule:
         images = table @ np.array([*self.projection, *self.charge_rows], dtype=object).reshape(-1, table.shape[1]).T
         rank, parts = len(self.projection), dict[tuple[Fraction, ...], Counter[Weight]]()
         for row, m in zip(images.tolist(), weights.values(), strict=True):
+            in_time()
             if all(x >= 0 for x in row[:rank]):
                 parts.setdefault(tuple(map(Fraction, row[rank:])), Counter())[tuple(row[:rank])] += m
         space, places = weight_space(" + ".join(self.factors) or "0"), self.places()

@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from math import prod
 
+from liehom.base.budget import in_time
 from liehom.base.errors import InputError
 from liehom.exact.algebra.roots.root_system import RootSystem
 from liehom.exact.representations.highest_weight.weights import Root, Weight, WeightSpace, checked_weight, weight_space
@@ -151,6 +152,7 @@ def irreducible_parts(space: WeightSpace, dominant: Mapping[Weight, int]) -> dic
         count = rest[top]
         if count == 0:
             continue
+        in_time()
         parts[top] = count
         for mu, m in _dominant_multiplicities(space, top).items():
             if rest.get(mu, 0) < count * m:

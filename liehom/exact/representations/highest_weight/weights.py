@@ -13,6 +13,7 @@ from typing import Any, final
 
 import numpy as np
 
+from liehom.base.budget import in_time
 from liehom.base.errors import InputError, ShapeError, displayed
 from liehom.exact.algebra.roots.root_system import RootSystem, root_system
 
@@ -81,6 +82,7 @@ class WeightSpace:
             # nu is reached only from s_j(nu), with j the first index at which nu is negative.
             below: dict[Weight, None] = {}
             for mu in level:
+                in_time()
                 for i, m in enumerate(mu):
                     if m > 0:
                         nu = self.reflected(mu, i)
