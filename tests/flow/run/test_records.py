@@ -145,8 +145,7 @@ def test_paths_without_the_steps_of_trajectories_that_wait() -> None:
 
 def test_requested_times_are_filled_when_a_step_passes_them() -> None:
     for direction in (1.0, -1.0):
-        samples = Samples(direction * np.array([0.0, 1.0, 2.0]), (2, 1), float, direction)
-        samples.start(np.float64(0.0), np.array([[7.0], [8.0]]))
+        samples = Samples(direction * np.array([0.0, 1.0, 2.0]), np.float64(0.0), np.array([[7.0], [8.0]]), direction)
         asked: list[float] = []
 
         def at(time: Any, here: Any, asked: list[float] = asked) -> Any:
@@ -159,8 +158,7 @@ def test_requested_times_are_filled_when_a_step_passes_them() -> None:
             samples.points[:, 0], [[7, direction, np.nan], [8, direction, 2 * direction]], equal_nan=True
         )
         assert samples.done.tolist() == [2, 3] and asked == [direction, direction, 2 * direction]
-    late = Samples(np.array([1.0]), (1,), float, 1.0)
-    late.start(np.float64(0.0), np.array([7.0]))
+    late = Samples(np.array([1.0]), np.float64(0.0), np.array([7.0]), 1.0)
     assert late.done.tolist() == 0 and np.isnan(late.points).all()
 
 
