@@ -292,6 +292,6 @@ def test_an_ensemble_of_poses_starts_at_its_momenta_and_positions() -> None:
     momentum, position = np.arange(30.0).reshape(5, 6), np.arange(15.0).reshape(5, 3)
     state = body.state(body.start(momentum=momentum, position=position))
     assert np.allclose(state.position, position) and np.allclose(state.momentum, momentum)
-    for wrong in ({"momentum": np.ones(5)}, {"momentum": np.ones(6), "position": np.ones(2)}):
-        with pytest.raises(lh.errors.ShapeError, match=r"expected \(\.\.\., 6\) and \(\.\.\., 3\)"):
+    for n, wrong in ((6, {"momentum": np.ones(5)}), (3, {"momentum": np.ones(6), "position": np.ones(2)})):
+        with pytest.raises(lh.errors.ShapeError, match=rf"expected \(\.\.\., {n}\)"):
             body.start(**wrong)  # type: ignore[arg-type]
