@@ -394,7 +394,7 @@ class AttitudeBody(PosedBody):
         return np.concatenate([-state.velocity, turning], axis=-1)
 
 
-# HeavyTop: a rigid body with a fixed point in a uniform field of gravity, on coadjoint orbits of se(3).
+# HeavyTop is a rigid body with a fixed point in a uniform field of gravity. It moves on coadjoint orbits of se(3).
 #
 #     m' = m x Om m + w Gamma x chi,   Gamma' = Gamma x Om m,   Om = I^-1
 #

@@ -185,7 +185,7 @@ class SpinLattice:
             raise ShapeError(f"spins of shape {np.shape(m)}, expected (..., {', '.join(map(str, own))})")
 
 
-# Interactions of spins: the energies of a lattice and their effective fields h_i = -dE/dm_i.
+# Interactions of spins are the energies of a lattice. Their effective fields are h_i = -dE/dm_i.
 #
 #     exchange                      -J sum_{i ~ j} <m_i, m_j>
 #     uniaxial anisotropy           -K sum_i <m_i, e>^2
@@ -254,11 +254,11 @@ def cubic_energy(axes: Array, m: Values) -> Values:
     return square[..., 0] * square[..., 1] + square[..., 1] * square[..., 2] + square[..., 2] * square[..., 0]
 
 
-# JointSpins: all spins of a small lattice as one point of R^(3n), on which so(3)^n acts.
+# JointSpins has all spins of a small lattice as one point of R^(3n), on which so(3)^n acts.
 #
 #     rho(x_1, ..., x_n)(m_1, ..., m_n) = (x_1 x m_1, ..., x_n x m_n)
 #
-# Steps of k exponentials cost O(n) per trajectory; what needs the isotropy or a series in matrices costs O(n^3).
+# Steps of k exponentials cost O(n) per trajectory. Isotropy and series in matrices cost O(n^3).
 
 
 @final

@@ -52,8 +52,8 @@ def _parameters(function: Callable[..., Any]) -> tuple[list[inspect.Parameter], 
 
 
 def call_form(function: Callable[..., Any], what: str) -> CallForm:
-    """The `CallForm` of a function: its time is a second parameter without a default, or one named t; its args are a
-    third parameter without a default, or one named args.
+    """The `CallForm` of a function, whose time and args are parameters of these names, or the second and the third
+    without a default.
     """
     parameters = _parameters(function)
     if parameters is None:

@@ -92,7 +92,7 @@ class Composition(Derived):
         return LocalStep(action, m, point=point)
 
 
-# Splitting: a product of flows of Hamiltonians whose sum is the Hamiltonian, each of which is known.
+# Splitting is a product of flows of Hamiltonians whose sum is the Hamiltonian. Each of them is known.
 #     m -> exp(h psi_1(m)) m is the flow of m' = rho(psi_1(m)) m  if psi_1 is constant along it
 # For H = f_1(<m, a_1>) + ... + f_k(<m, a_k>), sums of functions of linear functions, psi_i = f_i'(<m, a_i>) a_i is, as
 # <m, a_i> does not change under exp(s a_i) (R. I. McLachlan, Explicit Lie-Poisson integration and the Euler equations,

@@ -100,9 +100,9 @@ def _check_quadratic(space: MatrixCoordinates, matrices: Representation, name: s
             )
 
 
-# VariationalMidpoint: the Lie-Poisson step of the discrete Hamilton-Pontryagin principle, for any Lie algebra.
+# VariationalMidpoint is the Lie-Poisson step of the discrete Hamilton-Pontryagin principle, for any algebra.
 #     p = int_0^1 exp(s x) m ds,    x = h psi(p),    m -> exp(x) m
-# On the dual of a Lie algebra, with rho = ad* and psi = dH, p satisfies m = (dexp^-1)^* p: these are the discrete
+# On the dual of a Lie algebra, with rho = ad* and psi = dH, p satisfies m = (dexp^-1)^* p. These are the discrete
 # Euler-Poincare equations of the group difference exp(x) (N. Bou-Rabee and J. E. Marsden, Hamilton-Pontryagin
 # integrators on Lie groups, Found. Comput. Math. 9, 2009), without a Lagrangian.
 
